@@ -1,0 +1,102 @@
+#pragma once
+// What the session can ask of an engine. dem_server and continuum_server each implement it; neither
+// knows of sockets, scenes or files.
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "protocol/engine/boundary.hpp"
+#include "protocol/engine/ledger.hpp"
+#include "protocol/engine/motion.hpp"
+#include "protocol/engine/probes.hpp"
+#include "protocol/engine/tie.hpp"
+
+namespace gabion::engine {
+
+/// Trouble in the physics: a value that cannot go on (NaN, inverted element, lost grain), with the entity.
+/// Becomes an ERROR message with code "physics".
+struct PhysicsError : std::runtime_error {
+  PhysicsError(std::string where_, const std::string& message, std::string advice_)
+      : std::runtime_error(message), where(std::move(where_)), advice(std::move(advice_)) {}
+  std::string where, advice;
+};
+
+/// A request that makes no sense: becomes an ERROR message with code "value".
+struct RequestError : std::runtime_error {
+  RequestError(std::string where_, const std::string& message, std::string advice_)
+      : std::runtime_error(message), where(std::move(where_)), advice(std::move(advice_)) {}
+  std::string where, advice;
+};
+
+/// Bridging weights: w(X) = clamp(min over finite faces of (distance inward from the outer face)/width, floor, 1).
+struct WeightField {
+  Vec outer_lo = vec(-INFINITY, -INFINITY, -INFINITY);
+  Vec outer_hi = vec(INFINITY, INFINITY, INFINITY);
+  double width = 0.0;  ///< m; 0: weight 1 everywhere
+  double floor = 0.0;
+
+  double at(Vec x) const {
+    if (width <= 0.0) return 1.0;
+    double nearest = INFINITY;
+    for (int axis = 0; axis < 3; ++axis)
+      nearest = std::fmin(nearest, std::fmin(x[axis] - outer_lo[axis], outer_hi[axis] - x[axis]));
+    return std::fmin(1.0, std::fmax(floor, nearest / width));
+  }
+};
+
+struct Options {
+  Vec gravity{};  ///< m/s2
+  Vec box_lo{}, box_hi{};
+  bool periodic[3] = {false, false, false};
+  bool measure_energy = false;
+};
+
+struct NamedCount {
+  std::string name;
+  double value;
+};
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  Options options;
+  WeightField weights;
+  Motion motion;
+  Boundary boundary;
+  Tie tie;
+  Probes probes;
+  int threads = 1;
+
+  /// For heartbeats, read by another thread.
+  std::atomic<const char*> phase{"idle"};
+  std::atomic<std::uint64_t> current_step{0};
+
+  /// Builds contacts or stiffness, masses, freedom. May be called again after a change.
+  virtual void prepare() = 0;
+  /// Largest stable step of this engine alone, without damping, s. Call after prepare.
+  virtual double stable_step() = 0;
+  /// One step of the algorithm; false when the coupler asked to stop after it.
+  virtual bool step(const StepContext& context, Exchange& exchange) = 0;
+
+  /// Energies at the last step that was measured.
+  virtual Ledger ledger() const = 0;
+  virtual std::vector<NamedCount> counters() const = 0;
+  /// Mean unbalanced force (multipliers included) over the mean contact or element nodal force.
+  virtual double unbalanced() const = 0;
+  /// Entity first; nullopt when there is no such field. shape gets 1 or 2 extents.
+  virtual std::optional<std::vector<double>> field(const std::string& name, std::vector<std::uint64_t>& shape) const = 0;
+  /// displacement, velocity, and for grains rotation, spin. values: [n][3]. Throws RequestError.
+  virtual void set_field(const std::string& name, std::span<const double> values) = 0;
+  virtual std::uint64_t state_hash() const = 0;
+  /// The whole state, opaque; restore needs an engine that was set up the same way.
+  virtual std::vector<std::uint8_t> checkpoint() const = 0;
+  virtual void restore(std::span<const std::uint8_t> blob) = 0;
+};
+
+}  // namespace gabion::engine

@@ -1,0 +1,28 @@
+#pragma once
+// Energies by name. Stored energies and sums of work; what left the system is positive as "lost".
+
+#include <string>
+#include <vector>
+
+namespace gabion::engine {
+
+/// Each entry is one column of energy.csv. The balance that must stay constant is
+///   sum of stored and lost entries - sum of work entries.
+struct Ledger {
+  enum class Kind { stored, lost, work };
+  struct Entry {
+    std::string name;  ///< kinetic, elastic, gravity, friction, broken_bonds, damping, dashpots, sponge, loads, constraints, multipliers
+    Kind kind;
+    double energy;  ///< J
+  };
+  std::vector<Entry> entries;
+
+  void add(std::string name, Kind kind, double energy) { entries.push_back({std::move(name), kind, energy}); }
+  double balance() const {
+    double total = 0.0;
+    for (const Entry& e : entries) total += e.kind == Kind::work ? -e.energy : e.energy;
+    return total;
+  }
+};
+
+}  // namespace gabion::engine
