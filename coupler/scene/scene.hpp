@@ -26,6 +26,9 @@ struct History {
   std::vector<double> parameters;
 };
 
+/// The same function, later by the given time in s.
+History shifted(const History& history, double by);
+
 struct Material {
   std::string name;
   // grains; stiffness of a grain is the coefficient times its radius, two grains in series
@@ -53,10 +56,12 @@ struct Ground {
 };
 
 struct Grains {
-  std::optional<Box> zone;         ///< absent: the whole ground
-  std::string packing = "random";  ///< random, fcc, sc
+  std::optional<Box> zone;              ///< absent: the whole ground
+  std::string packing = "random";       ///< random, fcc, sc
   std::string radius_kind = "uniform";  ///< uniform, sieve
-  std::vector<double> radius;           ///< m; uniform: smallest and largest; lattice: one value
+  /// m; uniform: smallest and largest; lattice: one value; sieve: radius, share, radius, share ... (shares of the
+  /// mass, summing to 1)
+  std::vector<double> radius;
   double solid_fraction = 0.63;
   double contacts_per_grain = 5.7;
   std::uint32_t min_contacts = 3;
@@ -78,9 +83,9 @@ struct Sponge {
 };
 
 struct Coupling {
-  double overlap = 0.0;          ///< m, bridging
-  std::string rows = "mortar";   ///< mortar, mortar2h, strict, edge, edge_projected, edge_hats
-  std::string solve = "exact";   ///< exact, row_sum
+  double overlap = 0.0;         ///< m, bridging
+  std::string rows = "mortar";  ///< mortar, mortar2h, strict, edge, edge_projected, edge_hats
+  std::string solve = "exact";  ///< exact, row_sum
   Sponge sponge;
   double weight_floor = 0.01;
   double reach = 0.9;            ///< edge: grains within reach * radius of the border plane
@@ -98,26 +103,31 @@ using Faces = std::array<Face, 6>;
 
 struct Block {
   std::string shape = "cube";
-  double side = 0.0;      ///< m
-  double mass = 0.0;      ///< kg
+  double side = 0.0;         ///< m
+  double mass = 0.0;         ///< kg
   std::string tip = "down";  ///< down (corner), edge, face
-  Point position{};       ///< centre in x, y; z is set so that the block touches the ground
-  Point velocity{};       ///< m/s
-  Point spin{};           ///< rad/s
-  bool rotation = true;   ///< free
+  Point position{};          ///< centre in x, y; z is set so that the block touches the ground
+  Point velocity{};          ///< m/s
+  Point spin{};              ///< rad/s
+  bool rotation = true;      ///< free
   double friction = 1.0;
+  bool touching = true;  ///< false: position[2] is the height of the centre
+  int stage = 0;         ///< index of the stage at whose beginning the block is released
 };
 
 struct Stage {
   std::string name;
   double damping = 0.0;
-  double duration = infinity;           ///< s
-  std::uint64_t steps = 0;              ///< 0: not limited by a number of steps
-  double unbalanced = 0.0;              ///< ends when the unbalanced measure falls below; 0: not used
-  std::uint64_t max_steps = 10'000'000; ///< gives up beyond, with an error
-  std::vector<std::pair<int, Face>> faces;  ///< faces (0 to 5) that change in this stage
+  double duration = infinity;            ///< s
+  std::uint64_t steps = 0;               ///< 0: not limited by a number of steps
+  double unbalanced = 0.0;               ///< ends when the unbalanced measure falls below; 0: not used
+  double at_least = 0.0;                 ///< s from the stage's start; unbalanced is not looked at before
+  std::uint64_t max_steps = 10'000'000;  ///< gives up beyond, with an error
+  /// Faces (0 to 5) that change when the stage begins; times of their histories count from its start, those of
+  /// Scene::faces from the start of the run. See shifted().
+  std::vector<std::pair<int, Face>> faces;
   bool gravity = true;
-  bool zero_displacements = false;      ///< displacements are counted from the start of this stage
+  bool zero_displacements = false;  ///< displacements are counted from the start of this stage
 };
 
 /// A wave packet put into the ground at the start: u = a cos(k s) exp(-s^2/(2 width^2)), s along axis.
@@ -138,19 +148,19 @@ struct Probe {
 };
 
 struct Output {
-  double every = 0.0;          ///< s; 0: only first and last state
-  double probe_every = 0.0;    ///< s; 0: every step
+  double every = 0.0;                 ///< s; 0: only first and last state
+  double probe_every = 0.0;           ///< s; 0: every step
   std::uint64_t monitor_steps = 200;  ///< steps between progress, ledger and history rows
   std::vector<std::string> fields;    ///< extra fields beside displacement and velocity
 };
 
 struct Run {
-  double step_fraction = 0.9;       ///< of the smaller stable step
-  std::optional<double> step;       ///< s, fixed step
+  double step_fraction = 0.9;  ///< of the smaller stable step
+  std::optional<double> step;  ///< s, fixed step
   int threads_dem = 1;
   int threads_continuum = 1;
-  double checkpoint_every = 0.0;    ///< s of wall time; 0: none
-  double energy_tolerance = 0.01;   ///< balance over the run, share of the largest energy
+  double checkpoint_every = 0.0;   ///< s of wall time; 0: none
+  double energy_tolerance = 0.01;  ///< balance over the run, share of the largest energy
   bool measure_energy = true;
 };
 
@@ -173,7 +183,14 @@ struct Scene {
   Output output;
   Run run;
 
+  /// Throws std::out_of_range; cannot happen for names that ground and fills use.
   const Material& material(const std::string& wanted) const;
 };
+
+/// "dem", "continuum", "bridging", "edge"
+std::string to_string(Model model);
+
+/// Mean diameter of the grains by number, m.
+double mean_diameter(const Grains& grains);
 
 }  // namespace gabion::scene

@@ -49,6 +49,9 @@ class Tie {
   void correct(Motion& motion, const StepContext& context);
 
   double largest_displacement(const Motion& motion) const;
+  /// Displacements of points [0, reach) when the rows were set: part of an engine's state, for checkpoints.
+  const VecField& origin() const { return origin_; }
+  VecField& origin() { return origin_; }
   Work work;  ///< of the multipliers on this engine, J (ledger on)
 
  private:

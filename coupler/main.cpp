@@ -1,0 +1,127 @@
+// The coupler: reads a scene, drives the engines, writes the run folder.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <xmmintrin.h>
+
+#include "coupler/results/errors.hpp"
+#include "coupler/run/simulation.hpp"
+#include "coupler/scene/read_scene.hpp"
+
+namespace {
+
+using namespace gabion;
+
+/// Exit codes that scripts can rely on; docs/running.md.
+constexpr int finished = 0, failed = 1, user_mistake = 2, physics = 3;
+
+struct Arguments {
+  std::string scene, out, dem, continuum, token_file;
+  std::vector<std::string> overrides;
+  bool check = false, overwrite = false, json = false;
+};
+
+std::string read_token(const std::string& token_file) {
+  if (token_file.empty()) {
+    const char* token = std::getenv("GABION_TOKEN");
+    return token ? token : "";
+  }
+  std::ifstream in(token_file);
+  std::string token;
+  if (!std::getline(in, token)) throw protocol::AddressError("--token-file: cannot read " + token_file);
+  return token;
+}
+
+int run(const Arguments& arguments) {
+  const scene::ReadResult read = scene::read_scene(arguments.scene, arguments.overrides);
+  for (const scene::SceneProblem& warning : read.warnings) std::cerr << "warning: " << warning.text() << "\n";
+  const bool grains = coupler::uses_grains(read.scene.model), mesh = coupler::uses_mesh(read.scene.model);
+  if (arguments.check) {
+    if (arguments.json)
+      std::cout << nlohmann::json{{"scene", read.scene.name}, {"hash", read.hash_text}, {"dem", grains}, {"continuum", mesh}}.dump() << "\n";
+    else
+      std::cout << arguments.scene << ": valid (" << read.hash_text << ")\n";
+    return finished;
+  }
+  const auto need = [](bool wanted, const std::string& address, const char* option) {
+    if (wanted && address.empty())
+      throw protocol::AddressError(std::string(option) + " HOST:PORT is needed for this model: start the engine, it prints its port");
+  };
+  need(grains, arguments.dem, "--dem");
+  need(mesh, arguments.continuum, "--continuum");
+
+  const std::string token = read_token(arguments.token_file);
+  std::unique_ptr<coupler::EngineLink> dem, continuum;
+  if (!arguments.dem.empty())
+    dem = std::make_unique<coupler::EngineLink>("dem", protocol::parse_address(arguments.dem), token, read.hash_text);
+  if (!arguments.continuum.empty() && mesh)
+    continuum = std::make_unique<coupler::EngineLink>("continuum", protocol::parse_address(arguments.continuum), token, read.hash_text);
+
+  using Existing = coupler::RunFolder::Existing;
+  coupler::RunFolder folder(arguments.out, arguments.overwrite ? Existing::replace : Existing::refuse);
+  folder.write_text("scene.effective.json", read.effective);
+  coupler::Simulation simulation(read.scene, folder, dem.get(), continuum.get());
+  try {
+    const nlohmann::json summary = simulation.run();
+    for (coupler::EngineLink* link : {dem.get(), continuum.get()})
+      if (link) link->say_goodbye();
+    std::cerr << "finished: " << summary["step"]["count"] << " steps, energy error " << summary["energy"]["balance_error"]
+              << ", results in " << arguments.out << "\n";
+  } catch (const std::exception& error) {
+    folder.log(std::string("stopped: ") + error.what());
+    throw;
+  }
+  return finished;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  _mm_setcsr(_mm_getcsr() | 0x8040);  // denormals are zero, in and out
+  Arguments arguments;
+  CLI::App app{"Couples a dem_server and a continuum_server by Lagrange multipliers, and writes the results of a scene."};
+  app.add_option("scene", arguments.scene, "scene file (JSON)")->required();
+  app.add_option("--set", arguments.overrides, "override a key: key.path=value; may be repeated")->allow_extra_args(false);
+  app.add_option("--out", arguments.out, "run folder")->default_val("run");
+  app.add_option("--dem", arguments.dem, "HOST:PORT of the dem_server");
+  app.add_option("--continuum", arguments.continuum, "HOST:PORT of the continuum_server");
+  app.add_option("--token-file", arguments.token_file, "file with the run's token (default: environment variable GABION_TOKEN)");
+  app.add_flag("--check", arguments.check, "only check the scene");
+  app.add_flag("--json", arguments.json, "with --check: print what the scene needs as JSON");
+  app.add_flag("--overwrite", arguments.overwrite, "replace an earlier run in the run folder");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? finished : user_mistake;
+  }
+  try {
+    return run(arguments);
+  } catch (const scene::SceneError& error) {
+    std::cerr << "\n" << error.what() << "\n";
+    return user_mistake;
+  } catch (const protocol::AddressError& error) {
+    std::cerr << "\ncoupler: " << error.what() << "\n";
+    return user_mistake;
+  } catch (const coupler::ScenarioError& error) {
+    std::cerr << "\n" << arguments.scene << ": " << error.what() << "\n";
+    return user_mistake;
+  } catch (const coupler::RunFolderError& error) {
+    std::cerr << "\ncoupler: " << error.what() << "\n";
+    return user_mistake;
+  } catch (const protocol::RemoteError& error) {
+    std::cerr << "\ncoupler: " << error.what() << "\n";
+    if (error.code == "value" || error.code == "token" || error.code == "version") return user_mistake;
+    return error.code == "physics" ? physics : failed;
+  } catch (const coupler::RunFailed& error) {
+    std::cerr << "\n" << arguments.scene << ": " << error.what() << "\n";
+    return physics;
+  } catch (const std::exception& error) {
+    std::cerr << "\ncoupler: " << error.what() << "\n";
+    return failed;
+  }
+}

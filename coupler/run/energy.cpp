@@ -1,0 +1,53 @@
+#include "coupler/run/energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace gabion::coupler {
+
+namespace {
+
+const std::set<std::string> works{"loads", "constraints", "multipliers"};
+const std::set<std::string> stores{"kinetic", "rotational", "elastic", "gravity"};
+
+}  // namespace
+
+std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& dem,
+                                       const std::optional<protocol::RunDone>& continuum) {
+  double balance = 0.0, moved = 0.0, lost = 0.0;
+  double tie_work[2] = {0.0, 0.0};
+  std::vector<double> row;
+  columns_.clear();
+  int side = 0;
+  for (const auto* report : {&dem, &continuum}) {
+    if (*report)
+      for (std::size_t i = 0; i < (*report)->ledger_names.size(); ++i) {
+        const std::string& name = (*report)->ledger_names[i];
+        const double value = (*report)->ledger[i];
+        columns_.push_back((side == 0 ? "grains " : "continuum ") + name + " [J]");
+        row.push_back(value);
+        const bool work = works.contains(name);
+        balance += work ? -value : value;
+        if (name == "multipliers") tie_work[side] = value;
+        if (name == "kinetic" || name == "rotational" || name == "elastic") moved += std::fabs(value);
+        if (name == "loads" || name == "constraints") moved = std::max(moved, std::fabs(value));
+        if (!work && !stores.contains(name)) lost += value;
+      }
+    ++side;
+  }
+  if (!started_) first_ = balance;
+  started_ = true;
+  lost_ = lost;
+  scale_ = std::max({scale_, moved, lost});
+  drift_ = std::max(drift_, std::fabs(balance - first_));
+  error_ = scale_ > 0.0 ? drift_ / scale_ : 0.0;
+  const double larger = std::max(std::fabs(tie_work[0]), std::fabs(tie_work[1]));
+  if (larger > 0.0) residual_ = std::fabs(tie_work[0] + tie_work[1]) / larger;
+  columns_.push_back("balance [J]");
+  row.push_back(balance);
+  last_ = row;
+  return row;
+}
+
+}  // namespace gabion::coupler

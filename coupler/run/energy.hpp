@@ -1,0 +1,35 @@
+#pragma once
+// The energy balance of a run, from the ledgers of the engines.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/messages.hpp"
+
+namespace gabion::coupler {
+
+/// balance = stored + lost - work; it must stay what it was at the first measurement. Entries that an engine's
+/// ledger names loads, constraints and multipliers are work done on it; kinetic, rotational, elastic and gravity
+/// are stored; all others are lost.
+class EnergyBalance {
+ public:
+  /// Columns of energy.csv after the time, once the first reports are in.
+  std::vector<std::string> columns() const { return columns_; }
+  /// Adds a measurement and returns the row for energy.csv (without time).
+  std::vector<double> add(const std::optional<protocol::RunDone>& dem, const std::optional<protocol::RunDone>& continuum);
+
+  double error() const { return error_; }                 ///< largest |balance - first| over the largest energy moved
+  double multiplier_residual() const { return residual_; } ///< |work on grains + work on continuum| over the larger one
+  double largest_energy() const { return scale_; }        ///< J
+  double dissipated() const { return lost_; }             ///< J
+  const std::vector<double>& last() const { return last_; }
+
+ private:
+  std::vector<std::string> columns_;
+  std::vector<double> last_;
+  double first_ = 0.0, error_ = 0.0, residual_ = 0.0, scale_ = 0.0, lost_ = 0.0, drift_ = 0.0;
+  bool started_ = false;
+};
+
+}  // namespace gabion::coupler

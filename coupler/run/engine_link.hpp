@@ -1,0 +1,59 @@
+#pragma once
+// One engine, as the coupler talks to it: requests with their replies, and the rows of a coupled step.
+
+#include <chrono>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "protocol/messages.hpp"
+#include "protocol/wire/connection.hpp"
+
+namespace gabion::coupler {
+
+class EngineLink {
+ public:
+  /// Connects and greets. role: dem or continuum. Throws the protocol's exceptions, which name the engine, and
+  /// protocol::AddressError when it plays another role.
+  EngineLink(const std::string& role, const protocol::Address& address, const std::string& token,
+             const std::string& scene_hash);
+
+  const std::string& role() const { return role_; }
+
+  /// Sends a request and waits for its reply.
+  template <class Reply, class Request>
+  Reply ask(const Request& request) {
+    connection_.send(request);
+    return connection_.expect<Reply>(reply_deadline);
+  }
+  /// Sends a request that is answered by OK.
+  template <class Request>
+  void tell(const Request& request) {
+    ask<protocol::Ok>(request);
+  }
+
+  void start(const protocol::Run& run) { connection_.send(run, run.first_step); }
+  /// One step's rows, [slots][3]; valid until the next call.
+  std::span<const double> receive_gap(std::size_t slots, std::uint64_t step);
+  void send_multipliers(std::span<const double> rows, bool stop, std::uint64_t step) {
+    connection_.send_multipliers(rows, stop, step);
+  }
+  protocol::RunDone finish() { return connection_.expect<protocol::RunDone>(reply_deadline); }
+
+  std::vector<double> fetch(const std::string& field);
+  void say_goodbye() { tell(protocol::Bye{}); }
+
+  /// Bytes on the wire in both directions.
+  std::uint64_t bytes() const { return connection_.bytes_sent() + connection_.bytes_received(); }
+
+  static constexpr std::chrono::seconds connect_deadline{10};
+  static constexpr std::chrono::seconds reply_deadline{20};  ///< starts anew with every heartbeat
+  static constexpr std::chrono::seconds step_deadline{20};
+
+ private:
+  std::string role_;
+  protocol::Connection connection_;
+  std::vector<double> gap_;
+};
+
+}  // namespace gabion::coupler

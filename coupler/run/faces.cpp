@@ -1,0 +1,151 @@
+#include "coupler/run/faces.hpp"
+
+#include <cmath>
+
+namespace gabion::coupler {
+
+const std::array<const char*, 6> face_names{"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+
+namespace {
+
+std::uint8_t held_components(int face, const scene::Face& condition) {
+  if (condition.kind == "fixed") return 7;
+  if (condition.kind == "roller") return static_cast<std::uint8_t>(1 << (face / 2));
+  std::uint8_t bits = 0;
+  if (condition.kind == "velocity")
+    for (int axis = 0; axis < 3; ++axis)
+      if (condition.direction[axis] != 0.0) bits |= static_cast<std::uint8_t>(1 << axis);
+  return bits;
+}
+
+void put_triple(std::vector<double>& out, double x, double y, double z) { out.insert(out.end(), {x, y, z}); }
+
+}  // namespace
+
+void FaceSide::apply(int face, const scene::Face& condition, const std::vector<std::int32_t>& held, const Patch& patch,
+                     const Elasticity& elasticity) {
+  if (!link_) return;
+  State& state = faces_[face];
+  const std::string name = face_names[face];
+  const int normal = face / 2;
+  const std::uint8_t components = held_components(face, condition);
+  if (condition.kind == "absorbing" && state.components != 0) keep_reactions(face, state.held);
+
+  if (components != 0 || state.components != 0) {
+    protocol::Constrain group;
+    group.name = name;
+    if (components != 0) group.entities = held;
+    group.components = components;
+    group.direction = std::vector<double>(condition.direction.begin(), condition.direction.end());
+    group.history_kind = condition.kind == "velocity" ? condition.history.kind : "zero";
+    if (condition.kind == "velocity") group.history = condition.history.parameters;
+    link_->tell(group);
+    state.held = components != 0 ? held : std::vector<std::int32_t>{};
+    state.components = components;
+  }
+
+  const bool loaded = condition.kind == "pressure" || condition.kind == "traction";
+  if (loaded || state.loaded) {
+    protocol::Loads loads;
+    loads.name = name;
+    loads.history_kind = loaded ? condition.history.kind : "zero";
+    if (loaded) {
+      loads.history = condition.history.parameters;
+      loads.entities = patch.entities;
+      std::vector<double> vectors;
+      Triple direction = condition.direction;
+      if (condition.kind == "pressure") {
+        direction = {};
+        direction[normal] = face % 2 == 0 ? 1.0 : -1.0;  // compression pushes inward
+      }
+      for (const double a : patch.area) put_triple(vectors, a * direction[0], a * direction[1], a * direction[2]);
+      loads.vectors = vectors;
+    }
+    link_->tell(loads);
+    state.loaded = loaded;
+  }
+
+  const bool absorbing = condition.kind == "absorbing";
+  if (absorbing || !state.absorbing.empty()) {
+    protocol::Dashpots dashpots;
+    dashpots.name = name;
+    state.absorbing.clear();
+    state.coefficients.clear();
+    if (absorbing) {
+      // rho c A: the impedance of a plane wave along the normal (Lysmer & Kuhlemeyer 1969)
+      const double along = std::sqrt(elasticity.density * p_modulus(elasticity.stiffness, normal));
+      const double across = std::sqrt(elasticity.density * s_modulus(elasticity.stiffness, normal));
+      std::vector<double> coefficients;
+      for (const double a : patch.area) {
+        Triple c{across * a, across * a, across * a};
+        c[normal] = along * a;
+        put_triple(coefficients, c[0], c[1], c[2]);
+        state.coefficients.push_back(c);
+      }
+      dashpots.entities = patch.entities;
+      dashpots.coefficients = coefficients;
+      state.absorbing = patch.entities;
+    }
+    link_->tell(dashpots);
+  }
+
+  std::fill(freedom_.begin(), freedom_.end(), Triple{1, 1, 1});
+  std::fill(viscosity_.begin(), viscosity_.end(), Triple{});
+  for (const State& s : faces_) {
+    for (const std::int32_t e : s.held)
+      for (int axis = 0; axis < 3; ++axis)
+        if (s.components >> axis & 1) freedom_[e][axis] = 0.0;
+    for (std::size_t k = 0; k < s.absorbing.size(); ++k)
+      for (int axis = 0; axis < 3; ++axis) viscosity_[s.absorbing[k]][axis] += s.coefficients[k][axis];
+  }
+}
+
+void FaceSide::keep_reactions(int face, const std::vector<std::int32_t>& held) {
+  const std::vector<double> force = link_->fetch("force"), tie = link_->fetch("tie_force");
+  protocol::Loads dead;
+  dead.name = std::string(face_names[face]) + ".dead";
+  dead.entities = held;
+  dead.history_kind = "constant";
+  dead.history = std::vector<double>{1.0};
+  std::vector<double> vectors;
+  for (const std::int32_t e : held)
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool on = faces_[face].components >> axis & 1;
+      vectors.push_back(on ? -(force[3 * static_cast<std::size_t>(e) + axis] + tie[3 * static_cast<std::size_t>(e) + axis]) : 0.0);
+    }
+  dead.vectors = vectors;
+  link_->tell(dead);
+}
+
+Inertia FaceSide::inertia(const std::vector<double>& mass, double dt) const {
+  Inertia inertia;
+  inertia.freedom = freedom_;
+  inertia.mass.resize(mass.size());
+  for (std::size_t p = 0; p < mass.size(); ++p)
+    for (int axis = 0; axis < 3; ++axis) inertia.mass[p][axis] = mass[p] + 0.5 * dt * viscosity_[p][axis];
+  return inertia;
+}
+
+Faces::Faces(const scene::Scene& scene, const Assembly& assembly, EngineLink* dem, EngineLink* continuum)
+    : assembly_(assembly),
+      grains_(dem, assembly.grains.position.size()),
+      nodes_(continuum, assembly.mesh.nodes.size()) {
+  for (int face = 0; face < 6; ++face) {
+    if (scene.ground.periodic[face / 2]) continue;
+    if (dem) {
+      held_grains_[face] = grains_at_face(face, scene.ground.box, assembly.grains);
+      grain_patches_[face] = grain_patch(face, scene.ground.box, scene.ground.periodic, assembly.zone, assembly.grains);
+    }
+    if (continuum) {
+      held_nodes_[face] = nodes_at_face(face, assembly.mesh);
+      node_patches_[face] = mesh_patch(face, assembly.mesh, assembly.zone);
+    }
+  }
+}
+
+void Faces::apply(int face, const scene::Face& condition) {
+  grains_.apply(face, condition, held_grains_[face], grain_patches_[face], assembly_.elasticity);
+  nodes_.apply(face, condition, held_nodes_[face], node_patches_[face], assembly_.elasticity);
+}
+
+}  // namespace gabion::coupler

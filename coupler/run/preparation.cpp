@@ -1,0 +1,311 @@
+#include "coupler/run/preparation.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <stdexcept>
+#include <zlib.h>
+
+#include "protocol/engine/hash.hpp"
+
+namespace gabion::coupler {
+
+namespace {
+
+/// Changes when what a cached file depends on changes in meaning.
+constexpr std::uint64_t cache_version = 1;
+
+std::vector<double> flatten(const std::vector<Point>& points) {
+  std::vector<double> flat;
+  flat.reserve(3 * points.size());
+  for (const Point& p : points) flat.insert(flat.end(), p.begin(), p.end());
+  return flat;
+}
+
+std::vector<double> flatten(const Point& p) { return {p.begin(), p.end()}; }
+
+void add(engine::Hash& hash, const std::vector<double>& values) {
+  hash.add(static_cast<std::uint64_t>(values.size()));
+  for (const double v : values) hash.add(v);
+}
+
+template <class Message>
+std::optional<Message> read_cached(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return std::nullopt;
+  std::vector<char> bytes((std::istreambuf_iterator<char>(in)), {});
+  std::uint32_t crc = 0;
+  if (bytes.size() < sizeof crc) return std::nullopt;
+  std::memcpy(&crc, bytes.data(), sizeof crc);
+  const std::span<const std::byte> payload(reinterpret_cast<const std::byte*>(bytes.data()) + sizeof crc, bytes.size() - sizeof crc);
+  if (crc32(0, reinterpret_cast<const Bytef*>(payload.data()), static_cast<uInt>(payload.size())) != crc) return std::nullopt;
+  try {
+    protocol::Reader reader(payload);
+    Message message;
+    message.decode(reader);
+    return message;
+  } catch (const protocol::CodecError&) {
+    return std::nullopt;
+  }
+}
+
+/// Best effort: a cache that cannot be written costs time, not the run.
+template <class Message>
+void write_cached(const std::filesystem::path& path, const Message& message) {
+  std::vector<std::byte> payload;
+  protocol::Writer writer(payload);
+  message.encode(writer);
+  const std::uint32_t crc = static_cast<std::uint32_t>(
+      crc32(0, reinterpret_cast<const Bytef*>(payload.data()), static_cast<uInt>(payload.size())));
+  std::error_code error;
+  std::filesystem::create_directories(path.parent_path(), error);
+  std::filesystem::path unfinished = path;
+  unfinished += "." + std::to_string(std::hash<std::string>{}(path.string()) ^ static_cast<std::size_t>(std::rand()));
+  {
+    std::ofstream out(unfinished, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(&crc), sizeof crc);
+    out.write(reinterpret_cast<const char*>(payload.data()), static_cast<std::streamsize>(payload.size()));
+    if (!out) return;
+  }
+  std::filesystem::rename(unfinished, path, error);
+}
+
+protocol::Options options_of(const scene::Scene& scene) {
+  protocol::Options options;
+  options.gravity = flatten(scene.gravity);
+  options.box_lo = flatten(scene.ground.box.lo);
+  options.box_hi = flatten(scene.ground.box.hi);
+  options.periodic = std::vector<std::uint8_t>{scene.ground.periodic[0], scene.ground.periodic[1], scene.ground.periodic[2]};
+  options.measure_energy = scene.run.measure_energy;
+  return options;
+}
+
+protocol::GrainMaterials grain_materials(const std::vector<scene::Material>& materials) {
+  protocol::GrainMaterials m;
+  for (const scene::Material& material : materials) {
+    m.normal_stiffness.data.push_back(material.normal_stiffness);
+    m.shear_stiffness.data.push_back(material.shear_stiffness);
+    m.density.data.push_back(material.density);
+    m.friction.data.push_back(material.friction);
+    m.normal_strength.data.push_back(material.normal_strength);
+    m.shear_strength.data.push_back(material.shear_strength);
+  }
+  for (auto* field : {&m.normal_stiffness, &m.shear_stiffness, &m.density, &m.friction, &m.normal_strength, &m.shear_strength})
+    field->set_shape(std::array<std::uint64_t, 1>{field->data.size()});
+  return m;
+}
+
+protocol::ContactOptions contact_options(const scene::Scene& scene) {
+  protocol::ContactOptions options;
+  options.geometry = scene.grains.geometry;
+  options.rotations = scene.grains.rotations ? 1 : 0;
+  return options;
+}
+
+void send_weights(const Assembly& assembly, EngineLink& link) {
+  if (!assembly.coupled() || assembly.zone.overlap() <= 0.0) return;
+  protocol::Weights weights;
+  weights.outer_lo = flatten(assembly.zone.outer().lo);
+  weights.outer_hi = flatten(assembly.zone.outer().hi);
+  weights.width = assembly.zone.overlap();
+  weights.floor = assembly.zone.weight_floor();
+  link.tell(weights);
+}
+
+}  // namespace
+
+Cache::Cache() {
+  const char* own = std::getenv("GABION_CACHE");
+  const char* xdg = std::getenv("XDG_CACHE_HOME");
+  const char* home = std::getenv("HOME");
+  if (own && *own)
+    folder_ = own;
+  else if (xdg && *xdg)
+    folder_ = std::filesystem::path(xdg) / "gabion";
+  else
+    folder_ = std::filesystem::path(home && *home ? home : ".") / ".cache" / "gabion";
+}
+
+std::filesystem::path Cache::file(const std::string& kind, std::uint64_t key) const {
+  char name[32];
+  std::snprintf(name, sizeof name, "%016llx", static_cast<unsigned long long>(key));
+  return folder_ / (kind + "-" + name + ".bin");
+}
+
+Packing obtain_packing(const scene::Scene& scene, EngineLink* dem, const Cache& cache, const Log& log) {
+  if (scene.grains.packing != "random") return make_lattice(scene);
+  protocol::Pack pack;
+  pack.box_lo = flatten(scene.ground.box.lo);
+  pack.box_hi = flatten(scene.ground.box.hi);
+  pack.periodic = std::vector<std::uint8_t>{scene.ground.periodic[0], scene.ground.periodic[1], scene.ground.periodic[2]};
+  pack.radius_kind = scene.grains.radius_kind;
+  pack.radius = scene.grains.radius;
+  pack.solid_fraction = scene.grains.solid_fraction;
+  pack.contacts_per_grain = scene.grains.contacts_per_grain;
+  pack.min_contacts = scene.grains.min_contacts;
+  pack.seed = scene.grains.seed;
+  engine::Hash key;
+  key.add(cache_version);
+  std::vector<std::byte> bytes;
+  protocol::Writer writer(bytes);
+  pack.encode(writer);
+  for (const std::byte b : bytes) key.add(static_cast<std::uint64_t>(b));
+  const auto path = cache.file("packing", key.value());
+  std::optional<protocol::Packed> packed = read_cached<protocol::Packed>(path);
+  if (packed) {
+    log("packing: from the cache");
+  } else {
+    if (!dem) throw std::runtime_error("the packing is not in the cache: a dem_server is needed to make it (--dem)");
+    log("packing: making it");
+    packed = dem->ask<protocol::Packed>(pack);
+    write_cached(path, *packed);
+  }
+  Packing packing;
+  for (std::size_t i = 0; i < packed->radius.size(); ++i) {
+    packing.position.push_back({packed->position[3 * i], packed->position[3 * i + 1], packed->position[3 * i + 2]});
+    packing.radius.push_back(packed->radius[i]);
+  }
+  packing.gap = packed->gap;
+  packing.contacts_per_grain = packed->contacts_per_grain;
+  packing.solid_fraction = packed->solid_fraction;
+  packing.residual_overlap = packed->residual_overlap;
+  packing.rattlers = packed->rattlers;
+  return packing;
+}
+
+Elasticity obtain_elasticity(const scene::Scene& scene, const Packing& packing, EngineLink* dem, const Cache& cache,
+                             const Log& log) {
+  const scene::Material& soil = scene.material(scene.ground.material);
+  if (scene.mesh.stiffness == "material") {
+    if (!soil.young || !soil.poisson || !soil.bulk_density)
+      throw std::runtime_error("mesh.stiffness is 'material', but material '" + soil.name +
+                               "' lacks young, poisson or bulk_density; give them or use 'measured'");
+    return {isotropic_stiffness(*soil.young, *soil.poisson), *soil.bulk_density};
+  }
+  const Box window = homogenisation_window(scene, packing);
+  engine::Hash key;
+  key.add(cache_version);
+  add(key, flatten(packing.position));
+  add(key, packing.radius);
+  add(key, {packing.gap, soil.normal_stiffness, soil.shear_stiffness, soil.density, scene.grains.rotations ? 1.0 : 0.0});
+  add(key, flatten(window.lo));
+  add(key, flatten(window.hi));
+  add(key, flatten(scene.ground.box.lo));
+  add(key, flatten(scene.ground.box.hi));
+  add(key, {1.0 * scene.ground.periodic[0], 1.0 * scene.ground.periodic[1], 1.0 * scene.ground.periodic[2]});
+  const auto path = cache.file("stiffness", key.value());
+  std::optional<protocol::Homogenised> measured = read_cached<protocol::Homogenised>(path);
+  if (measured) {
+    log("stiffness of the packing: from the cache");
+  } else {
+    if (!dem) throw std::runtime_error("the stiffness of the packing is not in the cache: a dem_server is needed to measure it (--dem)");
+    log("stiffness of the packing: measuring it");
+    protocol::Options options = options_of(scene);
+    options.gravity = std::vector<double>{0, 0, 0};
+    dem->tell(options);
+    scene::Material elastic = soil;  // stiffness only: strengths do not matter at unit strain
+    elastic.friction = elastic.normal_strength = elastic.shear_strength = scene::infinity;
+    dem->tell(grain_materials({elastic}));
+    protocol::ContactOptions contacts = contact_options(scene);
+    contacts.geometry = "frozen";
+    dem->tell(contacts);
+    protocol::Grains grains;
+    grains.position = flatten(packing.position);
+    grains.radius = packing.radius;
+    grains.material = std::vector<std::int32_t>(packing.radius.size(), 0);
+    dem->tell(grains);
+    protocol::Bonds bonds;
+    bonds.gap = packing.gap;
+    dem->ask<protocol::Bonded>(bonds);
+    dem->ask<protocol::Ready>(protocol::Prepare{});
+    protocol::Homogenise homogenise;
+    homogenise.box_lo = flatten(window.lo);
+    homogenise.box_hi = flatten(window.hi);
+    measured = dem->ask<protocol::Homogenised>(homogenise);
+    write_cached(path, *measured);
+  }
+  Elasticity elasticity;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) elasticity.stiffness[i][j] = measured->stiffness[static_cast<std::size_t>(6 * i + j)];
+  elasticity.density = measured->density;
+  if (scene.mesh.stiffness == "measured_isotropic") {
+    const IsotropicFit fit = isotropic_fit(elasticity.stiffness);
+    elasticity.stiffness = isotropic_stiffness(fit.young, fit.poisson);
+  }
+  return elasticity;
+}
+
+protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, EngineLink& dem) {
+  dem.tell(options_of(scene));
+  dem.tell(grain_materials(scene.materials));
+  dem.tell(contact_options(scene));
+  protocol::Grains grains;
+  grains.position = flatten(assembly.grains.position);
+  grains.radius = assembly.grains.radius;
+  grains.material = assembly.material;
+  dem.tell(grains);
+  send_weights(assembly, dem);
+  protocol::Bonds bonds;
+  bonds.gap = assembly.bond_gap;
+  dem.ask<protocol::Bonded>(bonds);
+  protocol::Ready ready = dem.ask<protocol::Ready>(protocol::Prepare{});
+  assembly.grains.plain_mass = ready.plain_mass.data;
+  return ready;
+}
+
+protocol::Ready configure_continuum(const scene::Scene& scene, const Assembly& assembly, EngineLink& continuum) {
+  continuum.tell(options_of(scene));
+  protocol::SolidMaterials materials;
+  for (const auto& row : assembly.elasticity.stiffness)
+    materials.stiffness.data.insert(materials.stiffness.data.end(), row.begin(), row.end());
+  materials.stiffness.set_shape(std::array<std::uint64_t, 3>{1, 6, 6});
+  materials.density = std::vector<double>{assembly.elasticity.density};
+  continuum.tell(materials);
+  protocol::Mesh mesh;
+  mesh.nodes = flatten(assembly.mesh.nodes);
+  for (const auto& element : assembly.mesh.elements)
+    mesh.elements.data.insert(mesh.elements.data.end(), element.begin(), element.end());
+  for (const auto& wrap : assembly.mesh.wrap) mesh.wrap.data.insert(mesh.wrap.data.end(), wrap.begin(), wrap.end());
+  mesh.elements.set_shape(std::array<std::uint64_t, 2>{assembly.mesh.elements.size(), 8});
+  mesh.wrap.set_shape(std::array<std::uint64_t, 2>{assembly.mesh.wrap.size(), 8});
+  mesh.material = std::vector<std::int32_t>(assembly.mesh.elements.size(), 0);
+  continuum.tell(mesh);
+  send_weights(assembly, continuum);
+  return continuum.ask<protocol::Ready>(protocol::Prepare{});
+}
+
+void start_wave(const scene::Scene& scene, const Assembly& assembly, double dt, EngineLink* dem, EngineLink* continuum) {
+  if (!scene.wave) return;
+  const scene::Wave& wave = *scene.wave;
+  const Stiffness& c = assembly.elasticity.stiffness;
+  const double modulus = wave.axis == wave.polarisation ? p_modulus(c, wave.axis) : s_modulus(c, wave.axis);
+  const double speed = wave.sense * (wave.speed > 0.0 ? wave.speed : std::sqrt(modulus / assembly.elasticity.density));
+  const double k = 2.0 * std::acos(-1.0) / wave.wavelength;
+  // u = a cos(k s) exp(-s^2/(2 W^2)), s = x - centre - speed t
+  const auto shape = [&](double s) { return wave.amplitude * std::cos(k * s) * std::exp(-s * s / (2 * wave.width * wave.width)); };
+  const auto slope = [&](double s) {
+    const double envelope = wave.amplitude * std::exp(-s * s / (2 * wave.width * wave.width));
+    return envelope * (-k * std::sin(k * s) - s / (wave.width * wave.width) * std::cos(k * s));
+  };
+  const auto put = [&](EngineLink* link, const std::vector<Point>& points) {
+    if (!link) return;
+    std::vector<double> displacement(3 * points.size(), 0.0), velocity(3 * points.size(), 0.0);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double s = points[i][wave.axis] - wave.centre;
+      displacement[3 * i + wave.polarisation] = shape(s);
+      velocity[3 * i + wave.polarisation] = -speed * slope(s + 0.5 * speed * dt);
+    }
+    for (const auto& [name, values] : {std::pair{"displacement", &displacement}, std::pair{"velocity", &velocity}}) {
+      protocol::SetField field;
+      field.field = name;
+      field.values.set_shape(std::array<std::uint64_t, 2>{points.size(), 3});
+      field.values.data = *values;
+      link->tell(field);
+    }
+  };
+  put(dem, assembly.grains.position);
+  put(continuum, assembly.mesh.nodes);
+}
+
+}  // namespace gabion::coupler

@@ -1,0 +1,182 @@
+#include "coupler/run/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gabion::coupler {
+
+namespace {
+
+std::vector<double> flat(const std::vector<Point>& points) {
+  std::vector<double> values;
+  for (const Point& p : points) values.insert(values.end(), p.begin(), p.end());
+  return values;
+}
+
+/// Field names, components and units that a state holds.
+struct FieldOf {
+  const char* name;
+  int components;
+  const char* unit;
+};
+constexpr FieldOf grain_fields[] = {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}, {"spin", 3, "rad/s"}, {"broken", 1, ""}};
+constexpr FieldOf node_fields[] = {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}};
+constexpr FieldOf cell_fields[] = {{"stress", 6, "Pa"}};
+
+}  // namespace
+
+Recorder::Recorder(RunFolder& folder, const scene::Scene& scene, const Assembly& assembly,
+                   const std::vector<double>& grain_weights)
+    : folder_(folder), scene_(scene), assembly_(assembly), results_(folder.file("results.h5")) {
+  results_.attribute("title", scene.title);
+  results_.attribute("scene", scene.name);
+  if (assembly.has_grains) {
+    const std::vector<double> position = flat(assembly.grains.position);
+    const std::vector<std::int64_t> origin(assembly.origin.begin(), assembly.origin.end());
+    results_.write_grain_geometry({position, assembly.grains.radius, assembly.material, origin, grain_weights});
+  }
+  if (assembly.has_mesh) {
+    const std::vector<double> nodes = flat(assembly.mesh.nodes);
+    std::vector<std::int32_t> elements;
+    std::vector<std::uint8_t> wrap;
+    for (const auto& e : assembly.mesh.elements) elements.insert(elements.end(), e.begin(), e.end());
+    for (const auto& w : assembly.mesh.wrap) wrap.insert(wrap.end(), w.begin(), w.end());
+    std::vector<double> weight;
+    for (const Cell& cell : assembly.mesh.cells) {
+      const Point centre = assembly.mesh.grid.cell_centre(cell);
+      const bool shared = assembly.coupled() && assembly.zone.overlap() > 0.0 && assembly.zone.beyond_outer(centre) < 0.0;
+      weight.push_back(shared ? 1.0 - assembly.zone.weight(centre) : 1.0);
+    }
+    std::array<double, 3> period;
+    for (int axis = 0; axis < 3; ++axis) period[axis] = scene.ground.box.hi[axis] - scene.ground.box.lo[axis];
+    const std::vector<std::int32_t> material(assembly.mesh.elements.size(), 0);
+    results_.write_mesh_geometry({nodes, elements, wrap, period, material, weight});
+  }
+}
+
+void Recorder::set_probes(std::vector<std::string> dem, std::vector<std::string> continuum) {
+  dem_probes_ = std::move(dem);
+  continuum_probes_ = std::move(continuum);
+  if (dem_probes_.empty() && continuum_probes_.empty()) return;
+  std::vector<std::string> columns{"time [s]"};
+  for (const auto* names : {&dem_probes_, &continuum_probes_})
+    for (const std::string& name : *names)
+      for (const char* axis : {"x", "y", "z"}) columns.push_back(name + "." + axis + " [m]");
+  probes_ = std::make_unique<History>(folder_.history("probes.csv", columns));
+}
+
+void Recorder::monitor(const std::string& stage, std::uint64_t step, double time, double dt, const Advance& advance,
+                       double steps_per_second) {
+  double unbalanced = 0.0, speed = 0.0, interface_motion = 0.0;
+  for (const auto* report : {&advance.dem, &advance.continuum})
+    if (*report) {
+      unbalanced = std::max(unbalanced, (*report)->unbalanced);
+      speed = std::max(speed, (*report)->largest_speed);
+      interface_motion = std::max(interface_motion, (*report)->largest_displacement);
+    }
+  if (!monitor_)
+    monitor_ = std::make_unique<History>(folder_.history(
+        "monitor.csv", {"step", "time [s]", "dt [s]", "unbalanced", "largest speed [m/s]", "interface displacement [m]", "steps per second"}));
+  monitor_->append({static_cast<double>(step), time, dt, unbalanced, speed, interface_motion, steps_per_second});
+  if (scene_.run.measure_energy) {
+    std::vector<double> row = energy_.add(advance.dem, advance.continuum);
+    row.insert(row.begin(), time - dt);  // the ledger is that of the last step's t_n
+    if (!energy_rows_) {
+      std::vector<std::string> columns = energy_.columns();
+      columns.insert(columns.begin(), "time [s]");
+      energy_rows_ = std::make_unique<History>(folder_.history("energy.csv", columns));
+    }
+    energy_rows_->append(row);
+  }
+  probe_rows(time, step, dt, advance);
+  reaction_row(time, advance);
+  if (advance.dem) {
+    if (!counters_) {
+      std::vector<std::string> columns{"time [s]"};
+      columns.insert(columns.end(), advance.dem->counter_names.begin(), advance.dem->counter_names.end());
+      counters_ = std::make_unique<History>(folder_.history("counters.csv", columns));
+    }
+    std::vector<double> row{time};
+    row.insert(row.end(), advance.dem->counters.begin(), advance.dem->counters.end());
+    counters_->append(row);
+  }
+  (void)stage;
+}
+
+void Recorder::probe_rows(double time, std::uint64_t step, double dt, const Advance& advance) {
+  if (!probes_) return;
+  const auto* reference = advance.dem && !dem_probes_.empty() ? &*advance.dem : (advance.continuum ? &*advance.continuum : nullptr);
+  if (!reference) return;
+  for (std::size_t s = 0; s < reference->probe_steps.size(); ++s) {
+    // the sample of step k is taken before the drift: time t_k
+    std::vector<double> row{time - (static_cast<double>(step) - reference->probe_steps[s]) * dt};
+    const auto take = [&](const std::optional<protocol::RunDone>& report, const std::vector<std::string>& names) {
+      if (!report) return;
+      for (std::size_t p = 0; p < names.size(); ++p) {
+        auto& figure = probe_figures_[names[p]];
+        for (int axis = 0; axis < 3; ++axis) {
+          const double value = report->probes[(s * names.size() + p) * 3 + static_cast<std::size_t>(axis)];
+          row.push_back(value);
+          if (std::fabs(value) > std::fabs(figure[axis])) figure[axis] = value;
+          if (axis == 2) figure[3] = value;
+        }
+      }
+    };
+    take(advance.dem, dem_probes_);
+    take(advance.continuum, continuum_probes_);
+    probes_->append(row);
+  }
+}
+
+void Recorder::reaction_row(double time, const Advance& advance) {
+  std::vector<std::string> columns{"time [s]"};
+  std::vector<double> row{time};
+  const auto take = [&](const std::optional<protocol::RunDone>& report, const std::string& medium) {
+    if (!report) return;
+    for (std::size_t g = 0; g < report->reaction_names.size(); ++g)
+      for (int axis = 0; axis < 3; ++axis) {
+        columns.push_back(medium + " " + report->reaction_names[g] + "." + "xyz"[axis] + " [N]");
+        row.push_back(report->reactions[3 * g + static_cast<std::size_t>(axis)]);
+      }
+  };
+  take(advance.dem, "grains");
+  take(advance.continuum, "continuum");
+  if (columns.size() == 1) return;
+  if (!reactions_ || reactions_->columns() != columns) {
+    // the groups of a later stage may differ: they go to a file of their own
+    static constexpr const char* base = "reactions";
+    std::string name = std::string(base) + ".csv";
+    for (int n = 2; std::filesystem::exists(folder_.file(name)); ++n) name = std::string(base) + "-" + std::to_string(n) + ".csv";
+    reactions_ = std::make_unique<History>(folder_.history(name, columns));
+  }
+  reactions_->append(row);
+}
+
+void Recorder::state(const std::string& stage, std::uint64_t step, double time, double dt, EngineLink* dem,
+                     EngineLink* continuum, const InterfaceTie* tie) {
+  results_.begin_state(time, step, stage);
+  if (dem)
+    for (const FieldOf& f : grain_fields) results_.grain_field(f.name, dem->fetch(f.name), f.components, f.unit);
+  if (continuum) {
+    for (const FieldOf& f : node_fields) results_.node_field(f.name, continuum->fetch(f.name), f.components, f.unit);
+    for (const FieldOf& f : cell_fields) results_.cell_field(f.name, continuum->fetch(f.name), f.components, f.unit);
+  }
+  (void)tie;
+  (void)dt;
+  results_.end_state();
+}
+
+nlohmann::json Recorder::figures() const {
+  nlohmann::json figures = nlohmann::json::object();
+  for (const auto& [name, f] : probe_figures_)
+    figures[name] = {{"largest_x", f[0]}, {"largest_y", f[1]}, {"largest_z", f[2]}, {"last_z", f[3]}};
+  return figures;
+}
+
+void Recorder::close() {
+  for (auto* history : {&monitor_, &energy_rows_, &probes_, &reactions_, &counters_})
+    if (*history) (*history)->flush();
+  results_.close();
+}
+
+}  // namespace gabion::coupler

@@ -1,0 +1,53 @@
+#pragma once
+// Everything a run writes down, in one folder; docs/results.md lists it.
+
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "coupler/results/results_file.hpp"
+#include "coupler/results/run_folder.hpp"
+#include "coupler/run/assembly.hpp"
+#include "coupler/run/energy.hpp"
+#include "coupler/run/engine_link.hpp"
+#include "coupler/run/interface_tie.hpp"
+#include "coupler/run/stepper.hpp"
+
+namespace gabion::coupler {
+
+class Recorder {
+ public:
+  Recorder(RunFolder& folder, const scene::Scene& scene, const Assembly& assembly,
+           const std::vector<double>& grain_weights);
+
+  /// Probe names in the order in which they stand in each engine.
+  void set_probes(std::vector<std::string> dem, std::vector<std::string> continuum);
+
+  /// A row of each history; probes hold several samples.
+  void monitor(const std::string& stage, std::uint64_t step, double time, double dt, const Advance& advance,
+               double steps_per_second);
+  /// The fields of both media. dt: for the multiplier force.
+  void state(const std::string& stage, std::uint64_t step, double time, double dt, EngineLink* dem,
+             EngineLink* continuum, const InterfaceTie* tie);
+
+  const EnergyBalance& energy() const { return energy_; }
+  /// Largest displacement component of each probe over the run, m, and its last value.
+  nlohmann::json figures() const;
+  void close();
+
+ private:
+  void probe_rows(double time, std::uint64_t step, double dt, const Advance& advance);
+  void reaction_row(double time, const Advance& advance);
+
+  RunFolder& folder_;
+  const scene::Scene& scene_;
+  const Assembly& assembly_;
+  ResultsFile results_;
+  EnergyBalance energy_;
+  std::unique_ptr<History> monitor_, energy_rows_, probes_, reactions_, counters_;
+  std::vector<std::string> dem_probes_, continuum_probes_;
+  std::map<std::string, std::array<double, 4>> probe_figures_;  ///< largest |component| 3, last z
+};
+
+}  // namespace gabion::coupler

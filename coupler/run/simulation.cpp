@@ -1,0 +1,255 @@
+#include "coupler/run/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "coupler/ground/probe_rows.hpp"
+#include "coupler/interface/rotation.hpp"
+
+namespace gabion::coupler {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Beyond this share of the ground's smallest side the interface's motion is looked at for rotation.
+constexpr double look_for_rotation = 0.25;
+
+std::string hex(std::uint64_t value) {
+  char text[24];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+}  // namespace
+
+Simulation::Simulation(const scene::Scene& scene, RunFolder& folder, EngineLink* dem, EngineLink* continuum)
+    : scene_(scene), folder_(folder), dem_(dem), continuum_(continuum), log_([this](const std::string& line) { folder_.log(line); }) {}
+
+nlohmann::json Simulation::run() {
+  const auto begin = Clock::now();
+  prepare();
+  wall_preparing_ = std::chrono::duration<double>(Clock::now() - begin).count();
+  for (const scene::Stage& stage : scene_.stages) run_stage(stage);
+  progress_.end_line();
+  recorder_->close();
+  nlohmann::json result = summary();
+  result["wall"]["total"] = std::chrono::duration<double>(Clock::now() - begin).count();
+  folder_.write_json("summary.json", result);
+  const double error = recorder_->energy().error();
+  if (scene_.run.measure_energy && error > scene_.run.energy_tolerance)
+    throw RunFailed("the energy balance is off by " + number(error) + " of the largest energy, above run.energy_tolerance " +
+                    number(scene_.run.energy_tolerance) + "; look at energy.csv for the entry that grows");
+  return result;
+}
+
+void Simulation::prepare() {
+  const Cache cache;
+  packing_ = obtain_packing(scene_, dem_, cache, log_);
+  log_("packing: " + std::to_string(packing_.position.size()) + " grains, solid fraction " + number(packing_.solid_fraction) +
+       ", " + number(packing_.contacts_per_grain) + " contacts per grain, " + std::to_string(packing_.rattlers) +
+       " rattlers removed, bonding gap " + number(packing_.gap));
+  Elasticity elasticity;
+  if (needs_elasticity(scene_)) {
+    elasticity = obtain_elasticity(scene_, packing_, dem_, cache, log_);
+    const IsotropicFit fit = isotropic_fit(elasticity.stiffness);
+    log_("continuum: E " + number(fit.young) + " Pa, nu " + number(fit.poisson) + ", misfit " + number(fit.misfit) +
+         ", density " + number(elasticity.density) + " kg/m3");
+  }
+  assembly_ = assemble(scene_, packing_, elasticity);
+  if (!assembly_.has_grains) dem_ = nullptr;
+  if (!assembly_.has_mesh) continuum_ = nullptr;
+  if (dem_) {
+    const protocol::Ready ready = configure_dem(scene_, assembly_, *dem_);
+    grain_mass_ = ready.mass.data;
+    for (std::size_t g = 0; g < grain_mass_.size(); ++g) grain_weights_.push_back(grain_mass_[g] / ready.plain_mass[g]);
+  }
+  if (continuum_) node_mass_ = configure_continuum(scene_, assembly_, *continuum_).mass.data;
+  updated_geometry_ = dem_ && scene_.grains.geometry == "updated";
+  faces_.emplace(scene_, assembly_, dem_, continuum_);
+  if (dem_ && continuum_) {
+    try {
+      tie_.emplace(scene_, assembly_, *dem_, *continuum_);
+    } catch (const std::runtime_error& problem) {
+      throw ScenarioError(std::string("coupling.rows: ") + problem.what());
+    }
+  }
+  recorder_.emplace(folder_, scene_, assembly_, grain_weights_);
+  stepper_.emplace(dem_, continuum_, tie_ ? &*tie_ : nullptr);
+  place_probes();
+}
+
+void Simulation::place_probes() {
+  protocol::Probes in_grains, in_mesh;
+  for (auto* p : {&in_grains, &in_mesh}) p->row_ptr = std::vector<std::int32_t>{0};
+  for (const scene::Probe& probe : scene_.probes) {
+    const bool grains = dem_ && (!continuum_ || (assembly_.zone.beyond_outer(probe.at) <= 0.0 && assembly_.zone.weight(probe.at) >= 0.5));
+    const ProbeRow row = grains ? probe_in_grains(probe.at, assembly_.grains, scene_.ground.box, scene_.ground.periodic)
+                                : probe_in_mesh(probe.at, assembly_.mesh, assembly_.zone);
+    protocol::Probes& target = grains ? in_grains : in_mesh;
+    target.names.push_back(probe.name);
+    target.entities.data.insert(target.entities.data.end(), row.entities.begin(), row.entities.end());
+    target.coefficients.data.insert(target.coefficients.data.end(), row.coefficients.begin(), row.coefficients.end());
+    target.row_ptr.data.push_back(static_cast<std::int32_t>(target.entities.size()));
+  }
+  for (auto* p : {&in_grains, &in_mesh}) {
+    p->row_ptr.set_shape(std::array<std::uint64_t, 1>{p->row_ptr.size()});
+    p->entities.set_shape(std::array<std::uint64_t, 1>{p->entities.size()});
+    p->coefficients.set_shape(std::array<std::uint64_t, 1>{p->coefficients.size()});
+    p->every = 1;
+  }
+  recorder_->set_probes(in_grains.names, in_mesh.names);
+  if (!in_grains.names.empty()) dem_->tell(in_grains);
+  if (!in_mesh.names.empty()) continuum_->tell(in_mesh);
+}
+
+double Simulation::stable_step() {
+  double limit = scene::infinity;
+  if (dem_) limit = std::min(limit, stable_dem_ = dem_->ask<protocol::Ready>(protocol::StableStep{}).stable_step);
+  if (continuum_) limit = std::min(limit, stable_continuum_ = continuum_->ask<protocol::Ready>(protocol::StableStep{}).stable_step);
+  return limit;
+}
+
+double Simulation::choose_step(const scene::Stage& stage) {
+  // local damping cuts the limit to 1/sqrt(1 + alpha) of the undamped one (docs/theory.md, "Stable step")
+  const double limit = stable_step() / std::sqrt(1.0 + stage.damping);
+  if (scene_.run.step) {
+    if (*scene_.run.step > limit)
+      throw ScenarioError("run.step: " + number(*scene_.run.step) + " s is above the stable step of stage '" + stage.name + "', " +
+                          number(limit) + " s; lower it, or leave it out to have it chosen");
+    return *scene_.run.step;
+  }
+  return scene_.run.step_fraction * limit;
+}
+
+void Simulation::set_step(double dt) {
+  dt_ = dt;
+  if (!tie_) return;
+  tie_->set_step(dt, faces_->grain_inertia(grain_mass_, dt), faces_->node_inertia(node_mass_, dt), grain_weights_);
+  const InterfaceReport& r = tie_->report();
+  log_("interface: " + std::to_string(r.grains) + " grains tied by " + std::to_string(r.rows) + " rows (" + number(r.grains_per_row) +
+       " grains a row), rank " + std::to_string(r.rank) + ", condition " + number(r.condition) + ", " + std::to_string(r.merged_rows) + " rows merged");
+  if (r.rank < r.rows)
+    warnings_.push_back("the interface has " + std::to_string(r.rows) + " rows of rank " + std::to_string(r.rank) +
+                        ": more multipliers than the grains can carry; the reduced solve is used. Coarser rows: mortar2h or a larger mesh.size");
+}
+
+void Simulation::run_stage(const scene::Stage& stage) {
+  const bool first = stepper_->step() == 0 && stages_.empty();
+  if (first)
+    for (int face = 0; face < 6; ++face)
+      if (!scene_.ground.periodic[face / 2]) faces_->apply(face, scene_.faces[face]);
+  for (const auto& [face, condition] : stage.faces) faces_->apply(face, condition);
+
+  double dt = choose_step(stage);
+  const bool until_still = stage.unbalanced > 0.0;
+  std::uint64_t least = stage.steps;  // steps that the stage takes at least
+  if (std::isfinite(stage.duration)) {
+    least = static_cast<std::uint64_t>(std::ceil(stage.duration / dt));
+    dt = stage.duration / static_cast<double>(least);
+  }
+  set_step(dt);
+  if (first) {
+    start_wave(scene_, assembly_, dt, dem_, continuum_);
+    recorder_->state(stage.name, 0, 0.0, dt, dem_, continuum_, tie_ ? &*tie_ : nullptr);
+    next_output_ = scene_.output.every;
+  }
+  log_("stage " + stage.name + ": dt " + number(dt) + " s (stable " + number(stable_dem_) + " s grains, " + number(stable_continuum_) + " s continuum)");
+
+  std::uint64_t taken = 0;
+  double unbalanced = scene::infinity;
+  const auto rested = [&] { return taken >= least && unbalanced < stage.unbalanced; };
+  while (until_still ? !rested() : taken < least) {
+    if (until_still && taken >= stage.max_steps)
+      throw RunFailed("stage '" + stage.name + "' is not at rest after " + std::to_string(taken) + " steps: unbalanced " + number(unbalanced) +
+                      ", wanted " + number(stage.unbalanced) + "; raise stages.max_steps or the damping, or look for a part that moves freely");
+    std::uint64_t chunk = std::max<std::uint64_t>(1, scene_.output.monitor_steps);
+    if (!until_still || taken < least) chunk = std::min(chunk, least - taken);
+    if (scene_.output.every > 0.0)
+      chunk = std::min(chunk, std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil((next_output_ - stepper_->time()) / dt_ - 1e-6))));
+    last_ = stepper_->advance(chunk, dt_, stage.damping, scene_.run.measure_energy);
+    taken += chunk;
+    unbalanced = 0.0;
+    for (const auto* report : {&last_.dem, &last_.continuum})
+      if (*report) unbalanced = std::max(unbalanced, (*report)->unbalanced);
+    recorder_->monitor(stage.name, stepper_->step(), stepper_->time(), dt_, last_, progress_.steps_per_second());
+    progress_.show(stage.name, stepper_->step(), stepper_->time(), until_still || least == 0 ? -1.0 : static_cast<double>(taken) / static_cast<double>(least),
+                   unbalanced, recorder_->energy().error());
+    watch(stage, last_);
+    if (scene_.output.every > 0.0 && stepper_->time() >= next_output_ - 0.5 * dt_) {
+      recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
+      next_output_ += scene_.output.every;
+    }
+  }
+  recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
+  stages_.push_back({{"name", stage.name}, {"steps", taken}, {"time", stepper_->time()}, {"unbalanced", unbalanced}, {"dt", dt_}});
+}
+
+/// Stops what cannot be trusted: motion that is no number, an interface that has turned too far.
+void Simulation::watch(const scene::Stage& stage, const Advance& advance) {
+  for (const auto* report : {&advance.dem, &advance.continuum})
+    if (*report && !std::isfinite((*report)->largest_speed))
+      throw RunFailed("stage '" + stage.name + "', step " + std::to_string((*report)->step) + ": a velocity is not a number");
+  if (!tie_ || !advance.continuum) return;
+  // the rotation of the interface is at most its motion over half its width
+  double half_width = scene::infinity;
+  for (int axis = 0; axis < 3; ++axis)
+    half_width = std::min(half_width, 0.5 * (scene_.ground.box.hi[axis] - scene_.ground.box.lo[axis]));
+  const double motion = std::max(advance.continuum->largest_displacement, advance.dem->largest_displacement);
+  if (motion < look_for_rotation * scene_.coupling.rotation_limit * half_width) return;
+  const std::vector<double> u = continuum_->fetch("displacement");
+  const double rotation = interface_rotation(assembly_.mesh, tie_->rows(), u);
+  if (rotation > scene_.coupling.rotation_limit)
+    throw RunFailed("stage '" + stage.name + "': the interface has turned by " + number(rotation) + " rad, beyond coupling.rotation_limit " +
+                    number(scene_.coupling.rotation_limit) + "; linear elements would strain by its square. Enlarge grains.zone so that the interface lies in ground that does not turn");
+}
+
+nlohmann::json Simulation::summary() const {
+  nlohmann::json s;
+  static const std::map<scene::Model, const char*> names{
+      {scene::Model::dem, "dem"}, {scene::Model::continuum, "continuum"}, {scene::Model::bridging, "bridging"}, {scene::Model::edge, "edge"}};
+  s["scene"] = scene_.name;
+  s["title"] = scene_.title;
+  s["model"] = names.at(scene_.model);
+  if (last_.dem) s["state_hash"]["dem"] = hex(last_.dem->state_hash);
+  if (last_.continuum) s["state_hash"]["continuum"] = hex(last_.continuum->state_hash);
+  s["sizes"] = {{"grains", assembly_.grains.position.size()}, {"nodes", assembly_.mesh.nodes.size()}, {"elements", assembly_.mesh.elements.size()},
+                {"packing", packing_.position.size()}};
+  s["packing"] = {{"solid_fraction", packing_.solid_fraction}, {"contacts_per_grain", packing_.contacts_per_grain}, {"gap", packing_.gap},
+                  {"rattlers", packing_.rattlers}, {"residual_overlap", packing_.residual_overlap}, {"mean_diameter", packing_.mean_diameter()}};
+  if (needs_elasticity(scene_)) {
+    const IsotropicFit fit = isotropic_fit(assembly_.elasticity.stiffness);
+    s["elasticity"] = {{"young", fit.young}, {"poisson", fit.poisson}, {"misfit", fit.misfit}, {"density", assembly_.elasticity.density},
+                       {"stiffness", assembly_.elasticity.stiffness}};
+  }
+  if (tie_) {
+    const InterfaceReport& r = tie_->report();
+    s["interface"] = {{"grains", r.grains}, {"rows", r.rows}, {"rank", r.rank}, {"condition", r.condition}, {"merged_rows", r.merged_rows}, {"nonzeros", r.nonzeros}};
+  }
+  if (last_.dem)
+    for (std::size_t i = 0; i < last_.dem->counter_names.size(); ++i) s["counters"][last_.dem->counter_names[i]] = last_.dem->counters[i];
+  s["step"] = {{"dt", dt_}, {"count", stepper_->step()}, {"stable_dem", stable_dem_}, {"stable_continuum", stable_continuum_}, {"time", stepper_->time()}};
+  const StepTimes& t = stepper_->times();
+  const double steps = std::max<double>(1.0, static_cast<double>(t.steps));
+  s["wall"] = {{"preparing", wall_preparing_}, {"stepping", t.total}, {"us_per_step", 1e6 * t.total / steps}, {"dem_wait", t.waiting_dem},
+               {"continuum_wait", t.waiting_continuum}, {"solve", t.solving}};
+  s["bytes_per_step"] = static_cast<double>(t.bytes) / steps;
+  const EnergyBalance& energy = recorder_->energy();
+  s["energy"] = {{"balance_error", energy.error()}, {"largest", energy.largest_energy()}, {"dissipated", energy.dissipated()},
+                 {"multiplier_work_residual", energy.multiplier_residual()}};
+  for (const auto* report : {&last_.dem, &last_.continuum})
+    if (*report) s["momentum"][report == &last_.dem ? "dem" : "continuum"] = (*report)->momentum.data;
+  s["stages"] = stages_;
+  s["figures"] = recorder_->figures();
+  s["warnings"] = warnings_;
+  return s;
+}
+
+}  // namespace gabion::coupler

@@ -1,0 +1,59 @@
+#include "coupler/run/stepper.hpp"
+
+namespace gabion::coupler {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point& last) {
+  const Clock::time_point now = Clock::now();
+  const double passed = std::chrono::duration<double>(now - last).count();
+  last = now;
+  return passed;
+}
+
+}  // namespace
+
+Advance Stepper::advance(std::uint64_t steps, double dt, double damping, bool measure) {
+  Clock::time_point begin = Clock::now();
+  const std::uint64_t bytes_before = tie_ ? dem_->bytes() + continuum_->bytes() : 0;
+  protocol::Run run;
+  run.steps = steps;
+  run.first_step = step_;
+  run.time = time_;
+  run.dt = dt;
+  run.damping = damping;
+  run.measure = measure ? 1 : 0;
+  if (dem_) dem_->start(run);
+  if (continuum_) continuum_->start(run);
+
+  if (tie_)
+    for (std::uint64_t k = 0; k < steps; ++k, ++step_) tie_one_step();
+  else
+    step_ += steps;
+
+  Advance advance;
+  if (dem_) advance.dem = dem_->finish();
+  if (continuum_) advance.continuum = continuum_->finish();
+  time_ += static_cast<double>(steps) * dt;
+  if (tie_) times_.bytes += dem_->bytes() + continuum_->bytes() - bytes_before;
+  times_.steps += steps;
+  times_.total += seconds_since(begin);
+  return advance;
+}
+
+/// Gap from both, multipliers to both; the engines compute their interior meanwhile.
+void Stepper::tie_one_step() {
+  Clock::time_point last = Clock::now();
+  const std::span<const double> from_grains = dem_->receive_gap(tie_->slots(), step_);
+  times_.waiting_dem += seconds_since(last);
+  const std::span<const double> from_nodes = continuum_->receive_gap(tie_->slots(), step_);
+  times_.waiting_continuum += seconds_since(last);
+  const std::span<const double> answer = tie_->solve(from_grains, from_nodes);
+  times_.solving += seconds_since(last);
+  dem_->send_multipliers(answer, false, step_);
+  continuum_->send_multipliers(answer, false, step_);
+}
+
+}  // namespace gabion::coupler
