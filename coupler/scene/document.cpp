@@ -74,6 +74,15 @@ Json* reach(Json& document, const std::vector<std::string>& steps, const std::st
   return place;
 }
 
+bool is_utf8(const std::string& text) {
+  try {
+    (void)Json(text).dump();
+    return true;
+  } catch (const Json::type_error&) {
+    return false;
+  }
+}
+
 void remove_nulls(Json& value) {
   if (value.is_object()) {
     for (auto item = value.begin(); item != value.end();) {
@@ -121,7 +130,7 @@ Json parse_document(const std::string& text, std::vector<SceneProblem>& problems
     if (!document.is_object() && problems.empty())
       problems.push_back({"", document.dump().substr(0, 40), "an object: { \"gabion\": 1, ... }", ""});
     return document;
-  } catch (const Json::parse_error& error) {
+  } catch (const Json::exception& error) {  // syntax, encoding, a number out of range
     std::string what = error.what();  // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
     if (const auto bracket = what.find("] "); bracket != std::string::npos) what = what.substr(bracket + 2);
     problems.push_back({"", what, "JSON; // and /* */ comments are allowed",
@@ -131,6 +140,10 @@ Json parse_document(const std::string& text, std::vector<SceneProblem>& problems
 }
 
 void apply_override(Json& document, const std::string& text, std::vector<SceneProblem>& problems) {
+  if (!is_utf8(text)) {
+    problems.push_back({"--set", "text with bytes that are no UTF-8", "UTF-8", "check the encoding of the terminal or script"});
+    return;
+  }
   const auto equals = text.find('=');
   const auto steps = equals == std::string::npos ? std::vector<std::string>{} : split_path(text.substr(0, equals));
   if (steps.empty()) {

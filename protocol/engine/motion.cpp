@@ -103,7 +103,8 @@ double Motion::largest_speed() const {
   double largest = 0.0;
   for (const Vec v : velocity) {
     const double square = dot(v, v);
-    if (!(square <= largest)) largest = square;  // also catches NaN
+    if (!(square <= largest)) largest = square;  // also catches NaN,
+    if (std::isnan(square)) break;               // which the next one would overwrite
   }
   return std::sqrt(largest);
 }

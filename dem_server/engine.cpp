@@ -1,0 +1,127 @@
+#include "dem_server/engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace gabion::dem {
+
+using engine::PhysicsError;
+using engine::StepContext;
+
+DemEngine::DemEngine() = default;
+DemEngine::~DemEngine() = default;
+
+bool DemEngine::step(const StepContext& context, engine::Exchange& exchange) {
+  const std::size_t all = grains_.size(), interface = interface_limit();
+  const bool tied = tie.mode() != engine::Tie::Mode::none;
+  begin_step(context);
+  external_forces(context);
+  surface_forces();
+
+  contact_forces(0, interface);
+  motion.trial(0, interface, context);
+  boundary.prescribe(motion, context, 0, interface);
+  sponge_.absorb(motion);
+  if (tied) exchange.send_gap(tie.project(motion, context));
+
+  contact_forces(interface, all);
+  motion.trial(interface, all, context);
+  boundary.prescribe(motion, context, interface, all);
+  if (contact_options_.rotations) rotation_.trial(context);
+  if (block_.present()) block_.kick(context, options.gravity);
+
+  bool go_on = true;
+  if (tied) {
+    go_on = exchange.receive_multipliers(tie.answer_buffer());
+    tie.correct(motion, context);
+  }
+  sponge_.book(motion);
+  boundary.book(motion, context);
+  if (context.measure) measure();
+  drift(context);
+  return go_on;
+}
+
+std::size_t DemEngine::interface_limit() const { return std::max(tie.reach(), sponge_.reach()); }
+
+void DemEngine::begin_step(const StepContext& context) {
+  if (context.dt != step_size_) motion.set_step(step_size_ = context.dt);
+  if (rotation_groups() != held_groups_) hold_rotations();  // groups may change between runs
+  if (contact_options_.geometry == Geometry::updated) {
+    refresh_contacts();
+    return;
+  }
+  constexpr std::uint64_t steps_between_checks = 64;
+  if (steps_++ % steps_between_checks == 0) check_motion();
+}
+
+void DemEngine::refresh_contacts() {
+  const double limit = 0.25 * skin_ * skin_;  // half the skin, squared
+  bool moved = false;
+#pragma omp parallel for schedule(static) reduction(|| : moved) num_threads(threads) if (threads > 1)
+  for (std::size_t i = 0; i < grains_.size(); ++i) {
+    const Vec since = motion.displacement[i] - displacement_at_build_[i];
+    moved = moved || !(dot(since, since) <= limit);  // also when it is not a number
+  }
+  const bool surfaces_moved = (!walls_.empty() && walls_.largest_travel() > 0.5 * skin_) ||
+                              (block_.present() && block_.largest_travel() > 0.5 * skin_);
+  if (!moved && surfaces_moved) find_surfaces();
+  if (!moved) return;
+
+  check_motion();
+  const auto candidates = find_pairs(present_positions(), grains_.radius, skin_, built_domain_);
+  contact_.table = renewed_table(source(), contact_.table, candidates);
+  contact_.table_changed(grains_.size());
+  find_surfaces();
+  displacement_at_build_ = motion.displacement;
+  ++rebuilds_;
+  count_lost();
+}
+
+void DemEngine::external_forces(const StepContext& context) {
+  const Vec gravity = options.gravity;
+  const bool rotating = contact_options_.rotations;
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+  for (std::size_t i = 0; i < grains_.size(); ++i) {
+    motion.force[i] = splat(motion.mass[i]) * gravity;
+    if (rotating) rotation_.torque[i] = Vec{};
+  }
+  boundary.add_loads(motion, context);
+}
+
+void DemEngine::surface_forces() {
+  const bool rotating = contact_options_.rotations;
+  if (!walls_.empty()) walls_.add_forces(grains_, past_step_, motion, rotation_, rotating);
+  if (block_.present()) block_.add_forces(grains_, built_domain_, past_step_, motion, rotation_, rotating);
+}
+
+void DemEngine::contact_forces(std::size_t first, std::size_t last) {
+  if (contact_options_.geometry == Geometry::updated)
+    contact_.add(first, last, past_step_, grains_, motion, rotation_);
+  else
+    frozen_.add_forces(first, last, motion.displacement, rotation_.angle, motion.force, rotation_.torque,
+                       contact_options_.rotations, threads);
+}
+
+void DemEngine::drift(const StepContext& context) {
+  motion.drift(context);
+  if (contact_options_.rotations) rotation_.drift(context);
+  if (!walls_.empty()) walls_.drift(context.dt);
+  if (block_.present()) block_.drift(context);
+  past_step_ = context.dt;
+}
+
+/// Springs follow the last drift at the next force evaluation: brings that forward, before velocities
+/// are overwritten.
+void DemEngine::finish_last_step() {
+  if (past_step_ == 0.0) return;
+  if (contact_options_.geometry == Geometry::updated) {
+    refresh_contacts();
+    surface_forces();
+    contact_forces(0, grains_.size());
+  }
+  past_step_ = 0.0;
+}
+
+}  // namespace gabion::dem

@@ -1,0 +1,160 @@
+// DemEngine: energies, counts and fields.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "dem_server/engine.hpp"
+
+namespace gabion::dem {
+
+using engine::Ledger;
+using engine::PhysicsError;
+
+void DemEngine::measure() {
+  check_motion();
+  count_lost();
+  if (!motion.measured) return;
+  double gravity = block_.present() ? block_.gravity_energy(options.gravity) : 0.0;
+  for (std::size_t i = 0; i < grains_.size(); ++i)
+    gravity -= motion.mass[i] * dot(options.gravity, motion.displacement[i]);
+  const double moving = block_.present() ? block_.kinetic_energy() : 0.0;
+  const double turning = block_.present() ? block_.rotational_energy() : 0.0;
+  const double damped = motion.damping_work.until_now() + rotation_.damping_work.until_now() +
+                        block_.damping_work.until_now();
+  ledger_ = {};
+  ledger_.add("kinetic", Ledger::Kind::stored, motion.kinetic_energy() + moving);
+  ledger_.add("rotational", Ledger::Kind::stored,
+              (contact_options_.rotations ? rotation_.kinetic_energy() : 0.0) + turning);
+  ledger_.add("elastic", Ledger::Kind::stored, elastic_energy());
+  ledger_.add("gravity", Ledger::Kind::stored, gravity);
+  ledger_.add("friction", Ledger::Kind::lost,
+              contact_.losses.friction + walls_.friction_work + block_.friction_work);
+  ledger_.add("broken_bonds", Ledger::Kind::lost, contact_.losses.broken);
+  ledger_.add("damping", Ledger::Kind::lost, -damped);
+  ledger_.add("dashpots", Ledger::Kind::lost, -motion.dashpot_work.until_now());
+  ledger_.add("sponge", Ledger::Kind::lost, -sponge_.work.until_now());
+  ledger_.add("loads", Ledger::Kind::work, boundary.load_work.until_now());
+  ledger_.add("constraints", Ledger::Kind::work, boundary.constraint_work.until_now());
+  ledger_.add("multipliers", Ledger::Kind::work, tie.work.until_now());
+  ledger_.add("walls", Ledger::Kind::work, walls_.work.until_now());
+}
+
+double DemEngine::elastic_energy() const {
+  if (contact_options_.geometry == Geometry::frozen)
+    return frozen_.energy(motion.displacement, rotation_.angle, contact_options_.rotations);
+  return contact_.energy(motion.displacement) + walls_.energy() + block_.elastic_energy();
+}
+
+void DemEngine::check_motion() const {
+  for (std::size_t i = 0; i < grains_.size(); ++i) {
+    const double way = norm(motion.velocity[i]) * past_step_;
+    if (!std::isfinite(sum(motion.displacement[i]) + sum(motion.velocity[i]) + sum(rotation_.spin[i])))
+      throw PhysicsError("grain " + std::to_string(i), "its motion is not a finite number",
+                         "reduce the step, or look for the load or constraint that drives it");
+    if (way > grains_.radius[i])
+      throw PhysicsError("grain " + std::to_string(i),
+                         "it moved " + std::to_string(way) + " m in one step, more than its radius of " +
+                             std::to_string(grains_.radius[i]) + " m",
+                         "the step is too large, or grains overlapped at the start");
+  }
+}
+
+void DemEngine::count_lost() {
+  // ejected grains may fly above the box: lost is who is a whole box away from it
+  lost_.clear();
+  fast_ = 0;
+  Vec lo = options.box_lo, hi = options.box_hi;
+  double size = 0.0;
+  for (int axis = 0; axis < 3; ++axis) size = std::max(size, hi[axis] - lo[axis]);
+  for (std::size_t i = 0; i < grains_.size(); ++i) {
+    if (skin_ > 0.0 && norm(motion.velocity[i]) * past_step_ > skin_) ++fast_;
+    const Vec x = motion.position[i] + motion.displacement[i];
+    bool outside = false;
+    for (int axis = 0; axis < 3; ++axis)
+      if (hi[axis] > lo[axis] && !options.periodic[axis])
+        outside = outside || x[axis] < lo[axis] - size || x[axis] > hi[axis] + size;
+    if (outside) lost_.push_back(static_cast<std::int32_t>(i));
+  }
+}
+
+std::vector<engine::NamedCount> DemEngine::counters() const {
+  const ContactTable& table = contact_.table;
+  const std::size_t reach = tie.reach();
+  double contacts = 0, bonds = 0, slides = 0, tied_contacts = 0, tied_sliding = 0, tied_broken = 0;
+  table.each([&](std::size_t i, std::size_t c) {
+    const std::uint8_t state = table.state[c];
+    if (!(state & (bonded | touching))) return;
+    ++contacts;
+    if (state & bonded) ++bonds;
+    if (state & sliding) ++slides;
+    if (i >= reach) return;
+    ++tied_contacts;
+    if (state & sliding) ++tied_sliding;
+  });
+  for (std::size_t i = 0; i < std::min(reach, contact_.broken_as_first.size()); ++i)
+    tied_broken += contact_.broken_as_first[i];
+  double surface_contacts = 0;
+  for (const auto* list : {&walls_.contacts, &block_.contacts})
+    for (const SurfaceContact& c : *list) surface_contacts += c.state & touching ? 1 : 0;
+  return {{"grains", static_cast<double>(grains_.size())},
+          {"contacts", contacts},
+          {"bonds", bonds},
+          {"broken", static_cast<double>(contact_.breaks)},
+          {"sliding", slides},
+          {"lost", static_cast<double>(lost_.size())},
+          {"fast", static_cast<double>(fast_)},
+          {"rebuilds", static_cast<double>(rebuilds_)},
+          {"surface_contacts", surface_contacts},
+          {"tied_contacts", tied_contacts},
+          {"tied_sliding", tied_sliding},
+          {"tied_broken", tied_broken}};
+}
+
+std::vector<double> DemEngine::contact_rows() const {
+  const ContactTable& table = contact_.table;
+  const bool frozen = contact_options_.geometry == Geometry::frozen;
+  std::vector<double> rows;
+  table.each([&](std::size_t i, std::size_t c) {
+    if (!(table.state[c] & (bonded | touching))) return;
+    const auto j = static_cast<std::size_t>(table.second[c]);
+    const Reach reach = reach_of(table, c, motion.displacement[j] - motion.displacement[i]);
+    const Vec n = frozen ? frozen_.contacts()[c].normal : reach.branch / splat(reach.distance);
+    const Vec f = frozen ? frozen_.force(i, c, motion.displacement, rotation_.angle, contact_options_.rotations)
+                         : contact_.force(i, c, motion.displacement);
+    rows.insert(rows.end(), {static_cast<double>(i), static_cast<double>(j), n[0], n[1], n[2], f[0], f[1], f[2]});
+  });
+  return rows;
+}
+
+double DemEngine::mean_contact_force() const {
+  const std::vector<double> rows = contact_rows();
+  double total = 0.0;
+  std::size_t count = rows.size() / 8;
+  for (std::size_t r = 0; r < rows.size(); r += 8) total += std::hypot(rows[r + 5], rows[r + 6], rows[r + 7]);
+  for (const auto* list : {&walls_.contacts, &block_.contacts})
+    for (const SurfaceContact& c : *list)
+      if (c.state & touching) {
+        total += norm(c.force);
+        ++count;
+      }
+  return count == 0 ? 0.0 : total / static_cast<double>(count);
+}
+
+double DemEngine::unbalanced() const {
+  const double force = motion.mean_unbalanced_force(), scale = mean_contact_force();
+  if (scale > 0.0) return force / scale;
+  return force > 0.0 ? 1.0 : 0.0;
+}
+
+std::vector<double> DemEngine::momentum() const {
+  std::vector<double> total = motion.momentum();
+  const Vec spins = rotation_.momentum();
+  for (int axis = 0; axis < 3; ++axis) total[3 + axis] += spins[axis];
+  if (!block_.present()) return total;
+  const std::vector<double> block = block_.momentum();
+  for (std::size_t k = 0; k < total.size(); ++k) total[k] += block[k];
+  return total;
+}
+
+}  // namespace gabion::dem

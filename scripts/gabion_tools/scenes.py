@@ -1,0 +1,65 @@
+"""Finding a scene and reading the little of it that the launcher needs."""
+
+import difflib
+import json
+import re
+from pathlib import Path
+
+from gabion_tools.errors import UserError
+from gabion_tools.places import SCENARIOS
+
+MODELS = ("dem", "continuum", "bridging", "edge")
+
+
+def find(name):
+    """Path of a scene given as a file, or as the name of one of scenarios/. Raises UserError with the nearest name."""
+    given = Path(name)
+    for candidate in (given, SCENARIOS / name, SCENARIOS / f"{name}.json"):
+        if candidate.is_file():
+            return candidate.resolve()
+    known = sorted(path.stem for path in SCENARIOS.glob("*.json") if not path.stem.endswith("schema"))
+    near = difflib.get_close_matches(given.stem, known, 1)
+    advice = f"did you mean {near[0]}?" if near else "known scenes: " + (", ".join(known) or "none")
+    raise UserError(f"no scene '{name}': neither a file nor a name in scenarios/; {advice}")
+
+
+def without_comments(text):
+    """Scenes are JSON with // and /* */ comments; those inside strings stay."""
+    return re.sub(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', lambda found: found[1] or "", text, flags=re.DOTALL)
+
+
+def model(path, overrides):
+    """The scene's model, overrides included; None where the coupler will complain anyway."""
+    for override in reversed(overrides):
+        key, _, value = override.partition("=")
+        if key.strip() == "model":
+            return value.strip().strip('"')
+    try:
+        return json.loads(without_comments(path.read_text(encoding="utf-8"))).get("model")
+    except (ValueError, AttributeError, OSError):
+        return None
+
+
+def models(text):
+    """The list behind --models."""
+    if text == "all":
+        return list(MODELS)
+    chosen = [word.strip() for word in text.split(",") if word.strip()]
+    for word in chosen:
+        if word not in MODELS:
+            near = difflib.get_close_matches(word, MODELS, 1)
+            raise UserError(f"no model '{word}'; " + (f"did you mean {near[0]}?" if near else
+                                                      "models: " + ", ".join(MODELS)))
+    if not chosen:
+        raise UserError("--models needs at least one of " + ", ".join(MODELS) + ", or all")
+    return chosen
+
+
+def override_arguments(overrides):
+    """--set words for the coupler. Raises UserError where one is not key=value."""
+    words = []
+    for override in overrides:
+        if "=" not in override or override.startswith("="):
+            raise UserError(f"--set {override}: expected key=value, for example --set model=dem")
+        words += ["--set", override]
+    return words

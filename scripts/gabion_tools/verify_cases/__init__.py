@@ -1,0 +1,1 @@
+"""One module a case; see HOW_TO_ADD in ../verify.py."""

@@ -1,0 +1,27 @@
+"""Speed of the engines alone on one thread, from bench_dem and bench_continuum.
+
+Goals: the fastest peer that carries the same physics, measured on a machine of this kind. Bonded grains with
+rotation: ESyS-Particle 2.3.5, 1.46 M particle-steps/s. Elements: the upper end of the published figures of LULESH's
+one-point hexahedra, 1.68 M element-steps/s.
+"""
+
+import re
+import subprocess
+
+TITLE = "speed of contacts and elements, one thread"
+
+LINE = re.compile(r"(?P<case>.*?)\s{2,}.*?(?P<value>[\d.]+) M (?P<unit>particle|element)-steps/s")
+GOALS = {"particle": "> 1.46", "element": "> 1.68"}
+DEADLINE = 300  # s
+
+
+def run(context):
+    for program in ("bench_dem", "bench_continuum"):
+        text = subprocess.run([str(context.executable(program))], capture_output=True, text=True, timeout=DEADLINE,
+                              check=True).stdout
+        found = list(filter(None, map(LINE.match, text.splitlines())))
+        if not found:
+            yield context.figure(f"{program} printed no speed", False, "", "= True")
+        for row in found:
+            yield context.figure(f"{program}: {row['case']}", float(row["value"]), f"M{row['unit'][0]}/s",
+                                 GOALS[row["unit"]])
