@@ -41,7 +41,6 @@ struct BrickBatch {
 };
 
 /// Modal coefficients to modal forces, without the lanes' scale; both [axis][mode], mode 0 unused.
-template <bool orthotropic>
 inline void brick_modes(const BrickStiffness& c, const Lanes (&inverse)[3], const Lanes (&scaled)[3],
                         Lanes (&u)[3][8]) {
   Lanes g[3][8];
@@ -54,14 +53,9 @@ inline void brick_modes(const BrickStiffness& c, const Lanes (&inverse)[3], cons
   }
 #pragma GCC unroll 6
   for (int r = 0; r < 6; ++r) {
-    if constexpr (orthotropic) {
-      s[r] = c.constant[r][r] * e[r];
-      if (r < 3) s[r] += c.constant[r][(r + 1) % 3] * e[(r + 1) % 3] + c.constant[r][(r + 2) % 3] * e[(r + 2) % 3];
-    } else {
-      s[r] = c.constant[r][0] * e[0];
+    s[r] = c.constant[r][0] * e[0];
 #pragma GCC unroll 5
-      for (int q = 1; q < 6; ++q) s[r] += c.constant[r][q] * e[q];
-    }
+    for (int q = 1; q < 6; ++q) s[r] += c.constant[r][q] * e[q];
   }
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
@@ -80,14 +74,8 @@ inline void brick_modes(const BrickStiffness& c, const Lanes (&inverse)[3], cons
     const Lanes kk = u[k][ik] * inverse[k];
     const Lanes jk = u[j][ik] * inverse[k] + u[k][ij] * inverse[j];
     const auto& m = c.linear[i];
-    if constexpr (orthotropic) {
-      t[i][0] = m[0][0] * jj + m[0][1] * kk;
-      t[i][1] = m[1][0] * jj + m[1][1] * kk;
-      t[i][2] = m[2][2] * jk;
-    } else {
 #pragma GCC unroll 3
-      for (int r = 0; r < 3; ++r) t[i][r] = m[r][0] * jj + m[r][1] * kk + m[r][2] * jk;
-    }
+    for (int r = 0; r < 3; ++r) t[i][r] = m[r][0] * jj + m[r][1] * kk + m[r][2] * jk;
   }
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
@@ -105,15 +93,9 @@ inline void brick_modes(const BrickStiffness& c, const Lanes (&inverse)[3], cons
     const Lanes squared = inverse[i] * scaled[i];
     const auto& m = c.bilinear[i];
     const Lanes p[3] = {u[i][7] * squared, u[j][7] * squared, u[k][7] * squared};
-    if constexpr (orthotropic) {
-      trilinear[i] += m[0][0] * p[0];
-      trilinear[j] += m[1][1] * p[1];
-      trilinear[k] += m[2][2] * p[2];
-    } else {
-      trilinear[i] += m[0][0] * p[0] + m[0][1] * p[1] + m[0][2] * p[2];
-      trilinear[j] += m[1][0] * p[0] + m[1][1] * p[1] + m[1][2] * p[2];
-      trilinear[k] += m[2][0] * p[0] + m[2][1] * p[1] + m[2][2] * p[2];
-    }
+    trilinear[i] += m[0][0] * p[0] + m[0][1] * p[1] + m[0][2] * p[2];
+    trilinear[j] += m[1][0] * p[0] + m[1][1] * p[1] + m[1][2] * p[2];
+    trilinear[k] += m[2][0] * p[0] + m[2][1] * p[1] + m[2][2] * p[2];
   }
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
@@ -133,15 +115,15 @@ inline void gather_modes(const std::int32_t (&node)[8][lane_count], const Vec* d
   for (int axis = 0; axis < 3; ++axis) to_modes(u[axis]);
 }
 
-/// force -= K u for the nodes in own. One instantiation serves every thread count, so that the bits agree.
-template <bool orthotropic>
-[[gnu::noinline]] void subtract_brick_forces(const BrickBatch& batch, const BrickStiffness& stiffness,
-                                             const Vec* displacement, NodeRange own, bool whole, Vec* force) {
+/// force -= K u for the nodes in own. Never inlined: the same code for every thread count, so that the bits agree.
+/// Leaving out the zeros of an isotropic stiffness gains nothing: gathering and scattering take the time.
+[[gnu::noinline]] inline void subtract_brick_forces(const BrickBatch& batch, const BrickStiffness& stiffness,
+                                                    const Vec* displacement, NodeRange own, bool whole, Vec* force) {
   Lanes u[3][8];
   gather_modes(batch.node, displacement, u);
   const Lanes inverse[3] = {batch.inverse[0], batch.inverse[1], batch.inverse[2]};
   const Lanes scaled[3] = {inverse[0] * batch.scale, inverse[1] * batch.scale, inverse[2] * batch.scale};
-  brick_modes<orthotropic>(stiffness, inverse, scaled, u);
+  brick_modes(stiffness, inverse, scaled, u);
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) to_nodes(u[axis]);
 #pragma GCC unroll 8
@@ -158,7 +140,7 @@ template <bool orthotropic>
   const Lanes scaled[3] = {inverse[0] * batch.scale, inverse[1] * batch.scale, inverse[2] * batch.scale};
   for (int axis = 0; axis < 3; ++axis)
     for (int mode = 0; mode < 8; ++mode) g[axis][mode] = u[axis][mode];
-  brick_modes<false>(stiffness, inverse, scaled, g);
+  brick_modes(stiffness, inverse, scaled, g);
   Lanes twice{};
   for (int axis = 0; axis < 3; ++axis)
     for (int mode = 1; mode < 8; ++mode) twice += u[axis][mode] * g[axis][mode];

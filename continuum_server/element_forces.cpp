@@ -125,11 +125,7 @@ void ElementForces::subtract(Part part, const VecField& displacement, VecField& 
 }
 
 void ElementForces::subtract_batch(const BrickBatch& batch, const Vec* u, NodeRange own, bool whole, Vec* force) const {
-  const BrickStiffness& material = materials_[batch.material];
-  if (material.orthotropic)
-    subtract_brick_forces<true>(batch, material, u, own, whole, force);
-  else
-    subtract_brick_forces<false>(batch, material, u, own, whole, force);
+  subtract_brick_forces(batch, materials_[batch.material], u, own, whole, force);
 }
 
 void ElementForces::subtract_batch(const DistortedBatch& batch, const Vec* u, NodeRange own, bool whole,

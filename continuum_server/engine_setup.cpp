@@ -1,6 +1,7 @@
 // What ContinuumEngine::prepare() computes from the mesh: shapes, weights, masses, body loads.
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 
 #include "continuum_server/continuum_engine.hpp"
@@ -15,11 +16,14 @@ void ContinuumEngine::check_shapes() const {
     double smallest = smallest_corner_jacobian(corners);
     if (smallest > 0.0)
       for (const GaussPoint& point : gauss_points(corners)) smallest = std::min(smallest, point.volume);
-    if (!(smallest > 0.0))
-      throw RequestError("MESH.elements",
-                         "element " + std::to_string(e) + " is inverted or flat (smallest Jacobian " +
-                             std::to_string(smallest) + " m3)",
-                         "check the order of its corners, its nodes' positions and its wrap bits");
+    if (!(smallest > 0.0)) {
+      std::ostringstream value;
+      value << smallest;
+      throw RequestError(
+          "MESH.elements",
+          "element " + std::to_string(e) + " is inverted or flat (smallest Jacobian " + value.str() + " m3)",
+          "check the order of its corners, its nodes' positions and its wrap bits");
+    }
   }
 }
 

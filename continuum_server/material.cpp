@@ -18,13 +18,6 @@ Matrix6 matrix(const SolidMaterial& material) {
   return Eigen::Map<const Matrix6>(material.stiffness.data());
 }
 
-bool is_orthotropic(const Matrix6& c) {
-  for (int row = 0; row < 6; ++row)
-    for (int column = 3; column < 6; ++column)
-      if (row != column && c(row, column) != 0.0) return false;
-  return true;
-}
-
 /// Stiffness of the strains `kept` when the others are free to make the energy least.
 Eigen::Matrix3d condensed(const Matrix6& c, const int (&kept)[3], const int (&free)[3]) {
   Eigen::Matrix3d pp, pq, qq;
@@ -73,7 +66,6 @@ void check(const SolidMaterial& material, std::size_t index) {
 BrickStiffness brick_stiffness(const SolidMaterial& material) {
   const Matrix6 c = matrix(material);
   BrickStiffness result;
-  result.orthotropic = is_orthotropic(c);
   for (int r = 0; r < 6; ++r)
     for (int s = 0; s < 6; ++s) result.constant[r][s] = c(r, s);
   for (int i = 0; i < 3; ++i) {

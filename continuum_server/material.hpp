@@ -27,7 +27,6 @@ struct BrickStiffness {
   double constant[6][6];
   double linear[3][3][3];
   double bilinear[3][3][3];
-  bool orthotropic;  ///< no coupling between normal strains and shears, nor between shears
 };
 
 BrickStiffness brick_stiffness(const SolidMaterial& material);

@@ -45,9 +45,8 @@ struct ContactAction {
 inline void forget_bond_length(const LoopArrays& a, std::size_t i, std::size_t c, double distance) {
   const double apart = a.radius[i] + a.radius[a.second[c]];
   if (distance <= apart) return;
-  const Vec rest = without_fourth(a.branch[c]);
+  a.spring[c][3] = square_difference(norm(a.branch[c]), apart);
   a.branch[c][3] = apart;
-  a.spring[c][3] = dot(rest, rest) - apart * apart;
   a.state[c] &= static_cast<std::uint8_t>(~offset);
 }
 
@@ -119,7 +118,10 @@ inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, Co
 
 /// One thread: forces go straight to the grains, in contact order.
 template <class Law, bool rotating>
-void scatter_contacts(const LoopArrays& a, std::size_t first, std::size_t last, ContactSums& sums) {
+void scatter_contacts(const LoopArrays& arrays, std::size_t first, std::size_t last, ContactSums& total) {
+  // copies that nothing else points to: a store to an array need not be feared to change them
+  const LoopArrays a = arrays;
+  ContactSums sums;
   ContactAction act{};
   for (std::size_t i = first; i < last; ++i) {
     Vec fi = a.force[i], ti = rotating ? a.torque[i] : Vec{};
@@ -139,11 +141,14 @@ void scatter_contacts(const LoopArrays& a, std::size_t first, std::size_t last, 
     a.force[i] = fi;
     if constexpr (rotating) a.torque[i] = ti;
   }
+  total = sums;
 }
 
 /// Several threads: forces are kept per contact, see PairBuffer.
 template <class Law, bool rotating>
-void keep_contacts(const LoopArrays& a, std::size_t first, std::size_t last, ContactSums& sums) {
+void keep_contacts(const LoopArrays& arrays, std::size_t first, std::size_t last, ContactSums& total) {
+  const LoopArrays a = arrays;
+  ContactSums sums;
   ContactAction act{};
   for (std::size_t i = first; i < last; ++i)
     for (std::int32_t c = a.start[i]; c < a.start[i + 1]; ++c) {
@@ -155,6 +160,7 @@ void keep_contacts(const LoopArrays& a, std::size_t first, std::size_t last, Con
         a.pair_moment[c] = act.moment;
       }
     }
+  total = sums;
 }
 
 }  // namespace gabion::dem

@@ -25,7 +25,7 @@ void append_new(ContactTable& table, const ContactSource& source, const Pair& pa
   const double rest = bond ? length : source.grains.radius[i] + source.grains.radius[j];
   branch[3] = rest;
   Vec spring{};
-  spring[3] = bond ? 0.0 : (length - rest) * (length + rest);
+  spring[3] = bond ? 0.0 : square_difference(length, rest);
   ++table.start[i + 1];
   table.second.push_back(pair.j);
   table.image.push_back(pair.image);

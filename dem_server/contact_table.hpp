@@ -34,6 +34,9 @@ struct ContactTable {
   }
 };
 
+/// The fourth of spring for a pair that touches at the rest length.
+inline double square_difference(double length, double rest) { return (length - rest) * (length + rest); }
+
 /// What a table is made from.
 struct ContactSource {
   const Grains& grains;

@@ -38,8 +38,9 @@ bool DemEngine::step(const StepContext& context, engine::Exchange& exchange) {
   }
   sponge_.book(motion);
   boundary.book(motion, context);
-  if (context.measure) measure();
+  if (context.measure) measure_potentials();
   drift(context);
+  if (context.measure) close_ledger();
   return go_on;
 }
 
@@ -70,13 +71,20 @@ void DemEngine::refresh_contacts() {
   if (!moved) return;
 
   check_motion();
-  const auto candidates = find_pairs(present_positions(), grains_.radius, skin_, built_domain_);
-  contact_.table = renewed_table(source(), contact_.table, candidates);
+  contact_.table = renewed_table(source(), contact_.table, near_pairs());
   contact_.table_changed(grains_.size());
   find_surfaces();
   displacement_at_build_ = motion.displacement;
   ++rebuilds_;
   count_lost();
+}
+
+std::vector<Pair> DemEngine::near_pairs() const {
+  try {
+    return find_pairs(present_positions(), grains_.radius, skin_, built_domain_);
+  } catch (const std::invalid_argument& error) {
+    throw PhysicsError("contact search", error.what(), "grains left the domain for good, or the step is too large");
+  }
 }
 
 void DemEngine::external_forces(const StepContext& context) {

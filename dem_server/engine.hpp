@@ -44,8 +44,8 @@ class DemEngine : public engine::Engine {
   void set_grains(VecField position, std::vector<double> radius, std::vector<std::int32_t> material);
   void set_materials(std::vector<GrainMaterial> materials);
   void set_contact_options(const ContactOptions& contact_options);
-  /// Bonds every pair whose gap is at most gap times the sum of the radii, instead of earlier bonds.
-  /// Needs the grains and the options' box.
+  /// Bonds every pair whose gap is at most gap times the sum of the radii, instead of earlier bonds;
+  /// stress-free at the rest positions. Needs the grains and the options' box.
   Bonded make_bonds(double gap);
   void set_walls(std::vector<Wall> walls);
   void set_block(const BlockSetup& setup);
@@ -105,6 +105,7 @@ class DemEngine : public engine::Engine {
   // the step (engine.cpp), in call order
   void begin_step(const engine::StepContext& context);
   void refresh_contacts();
+  std::vector<Pair> near_pairs() const;
   void external_forces(const engine::StepContext& context);
   void surface_forces();
   void contact_forces(std::size_t first, std::size_t last);
@@ -113,7 +114,8 @@ class DemEngine : public engine::Engine {
   void finish_last_step();
 
   // looking at the state (measure.cpp)
-  void measure();
+  void measure_potentials();
+  void close_ledger();
   double elastic_energy() const;
   double mean_contact_force() const;
   void check_motion() const;
@@ -142,6 +144,7 @@ class DemEngine : public engine::Engine {
   double past_step_ = 0.0;  ///< dt of the drift that led to the present state; 0: none
   std::uint64_t steps_ = 0, rebuilds_ = 0, fast_ = 0;
   std::vector<std::int32_t> lost_;  ///< grains that left the domain, ascending
+  double elastic_ = 0.0, gravity_ = 0.0;  ///< at t_n of the last measured step, J
   engine::Ledger ledger_;
 };
 

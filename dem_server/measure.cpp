@@ -11,13 +11,20 @@ namespace gabion::dem {
 using engine::Ledger;
 using engine::PhysicsError;
 
-void DemEngine::measure() {
+/// Before the drift: positions are those of t_n.
+void DemEngine::measure_potentials() {
+  if (!motion.measured) return;
+  elastic_ = elastic_energy();
+  gravity_ = block_.present() ? block_.gravity_energy(options.gravity) : 0.0;
+  for (std::size_t i = 0; i < grains_.size(); ++i)
+    gravity_ -= motion.mass[i] * dot(options.gravity, motion.displacement[i]);
+}
+
+/// After the drift, which books the work of damping, dashpots and walls.
+void DemEngine::close_ledger() {
   check_motion();
   count_lost();
   if (!motion.measured) return;
-  double gravity = block_.present() ? block_.gravity_energy(options.gravity) : 0.0;
-  for (std::size_t i = 0; i < grains_.size(); ++i)
-    gravity -= motion.mass[i] * dot(options.gravity, motion.displacement[i]);
   const double moving = block_.present() ? block_.kinetic_energy() : 0.0;
   const double turning = block_.present() ? block_.rotational_energy() : 0.0;
   const double damped = motion.damping_work.until_now() + rotation_.damping_work.until_now() +
@@ -26,8 +33,8 @@ void DemEngine::measure() {
   ledger_.add("kinetic", Ledger::Kind::stored, motion.kinetic_energy() + moving);
   ledger_.add("rotational", Ledger::Kind::stored,
               (contact_options_.rotations ? rotation_.kinetic_energy() : 0.0) + turning);
-  ledger_.add("elastic", Ledger::Kind::stored, elastic_energy());
-  ledger_.add("gravity", Ledger::Kind::stored, gravity);
+  ledger_.add("elastic", Ledger::Kind::stored, elastic_);
+  ledger_.add("gravity", Ledger::Kind::stored, gravity_);
   ledger_.add("friction", Ledger::Kind::lost,
               contact_.losses.friction + walls_.friction_work + block_.friction_work);
   ledger_.add("broken_bonds", Ledger::Kind::lost, contact_.losses.broken);

@@ -54,6 +54,11 @@ void Walls::add_forces(const Grains& grains, double past_step, engine::Motion& m
   for (SurfaceContact& c : contacts) {
     const Wall& wall = walls[c.surface];
     const double e = elongation(grains, motion, c);
+    if (!(c.state & touching) && !(e < 0.0)) {
+      c.elongation = e;
+      c.force = Vec{};
+      continue;
+    }
     const Vec n = -wall.normal;
     const Vec lever = splat(contact_arm(grains.radius[c.grain], e)) * n;
     Vec slip = wall.velocity - motion.velocity[c.grain];

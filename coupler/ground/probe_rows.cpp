@@ -43,7 +43,7 @@ ProbeRow probe_in_grains(const Point& at, const GrainSet& grains, const Box& gro
     p << 1.0, offset(static_cast<std::size_t>(g));
     normal += p * p.transpose();
   }
-  const Eigen::Vector4d at_point = normal.completeOrthogonalDecomposition().solve(Eigen::Vector4d::UnitX());
+  const Eigen::Vector4d at_point = normal.fullPivLu().solve(Eigen::Vector4d::UnitX());
   for (const std::int32_t g : row.entities) {
     Eigen::Vector4d p;
     p << 1.0, offset(static_cast<std::size_t>(g));

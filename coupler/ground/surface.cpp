@@ -37,7 +37,7 @@ void correct_moments(Patch& patch, const std::vector<std::array<double, 2>>& at,
     have += patch.area[k] * p;
   }
   const Eigen::Vector3d wanted(area, moment[0], moment[1]);
-  const Eigen::Vector3d factor = m.completeOrthogonalDecomposition().solve(wanted - have);
+  const Eigen::Vector3d factor = m.fullPivLu().solve(wanted - have);
   for (std::size_t k = 0; k < patch.area.size(); ++k)
     patch.area[k] *= 1.0 + factor[0] + factor[1] * at[k][0] + factor[2] * at[k][1];
 }

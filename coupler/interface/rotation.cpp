@@ -28,7 +28,7 @@ double interface_rotation(const HexMesh& mesh, const InterfaceRows& rows, std::s
     inertia += r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose();
     turning += r.cross(moved(n) - mean);
   }
-  return inertia.completeOrthogonalDecomposition().solve(turning).norm();
+  return inertia.fullPivLu().solve(turning).norm();
 }
 
 }  // namespace gabion::coupler

@@ -1,9 +1,11 @@
 #include "coupler/run/preparation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <optional>
+#include <random>
 #include <stdexcept>
 #include <zlib.h>
 
@@ -174,8 +176,29 @@ Packing obtain_packing(const scene::Scene& scene, EngineLink* dem, const Cache& 
   return packing;
 }
 
-Elasticity obtain_elasticity(const scene::Scene& scene, const Packing& packing, EngineLink* dem, const Cache& cache,
+namespace {
+
+constexpr int lattice_sample_cells = 3;
+
+/// A lattice repeats: a few cells, periodic in every direction, have its stiffness to round-off.
+scene::Scene lattice_sample(const scene::Scene& scene, const Packing& lattice) {
+  scene::Scene sample = scene;
+  const double cell = lattice.radius[0] * (scene.grains.packing == "fcc" ? 2.0 * std::sqrt(2.0) : 2.0);
+  sample.ground.periodic = {true, true, true};
+  sample.ground.box.lo = {0, 0, 0};
+  sample.ground.box.hi = {lattice_sample_cells * cell, lattice_sample_cells * cell, lattice_sample_cells * cell};
+  sample.grains.zone.reset();
+  sample.grains.radius = {lattice.radius[0]};
+  return sample;
+}
+
+}  // namespace
+
+Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_packing, EngineLink* dem, const Cache& cache,
                              const Log& log) {
+  const bool lattice = whole.grains.packing != "random";
+  const scene::Scene scene = lattice ? lattice_sample(whole, whole_packing) : whole;
+  const Packing packing = lattice ? make_lattice(scene) : whole_packing;
   const scene::Material& soil = scene.material(scene.ground.material);
   if (scene.mesh.stiffness == "material") {
     if (!soil.young || !soil.poisson || !soil.bulk_density)
@@ -275,37 +298,96 @@ protocol::Ready configure_continuum(const scene::Scene& scene, const Assembly& a
   return continuum.ask<protocol::Ready>(protocol::Prepare{});
 }
 
-void start_wave(const scene::Scene& scene, const Assembly& assembly, double dt, EngineLink* dem, EngineLink* continuum) {
-  if (!scene.wave) return;
-  const scene::Wave& wave = *scene.wave;
+namespace {
+
+/// Displacement and velocity of one point, added to what is there.
+using Start = std::function<void(const Point& x, double* displacement, double* velocity)>;
+
+Start wave_start(const scene::Scene& scene, const Assembly& assembly, double dt) {
+  const scene::Wave wave = *scene.wave;
   const Stiffness& c = assembly.elasticity.stiffness;
   const double modulus = wave.axis == wave.polarisation ? p_modulus(c, wave.axis) : s_modulus(c, wave.axis);
   const double speed = wave.sense * (wave.speed > 0.0 ? wave.speed : std::sqrt(modulus / assembly.elasticity.density));
   const double k = 2.0 * std::acos(-1.0) / wave.wavelength;
   // u = a cos(k s) exp(-s^2/(2 W^2)), s = x - centre - speed t
-  const auto shape = [&](double s) { return wave.amplitude * std::cos(k * s) * std::exp(-s * s / (2 * wave.width * wave.width)); };
-  const auto slope = [&](double s) {
-    const double envelope = wave.amplitude * std::exp(-s * s / (2 * wave.width * wave.width));
-    return envelope * (-k * std::sin(k * s) - s / (wave.width * wave.width) * std::cos(k * s));
+  return [=](const Point& x, double* displacement, double* velocity) {
+    const double square = wave.width * wave.width;
+    const double s = x[wave.axis] - wave.centre, back = s + 0.5 * speed * dt;
+    displacement[wave.polarisation] += wave.amplitude * std::cos(k * s) * std::exp(-s * s / (2 * square));
+    velocity[wave.polarisation] += speed * wave.amplitude * std::exp(-back * back / (2 * square)) *
+                                   (k * std::sin(k * back) + back / square * std::cos(k * back));
   };
-  const auto put = [&](EngineLink* link, const std::vector<Point>& points) {
-    if (!link) return;
-    std::vector<double> displacement(3 * points.size(), 0.0), velocity(3 * points.size(), 0.0);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double s = points[i][wave.axis] - wave.centre;
-      displacement[3 * i + wave.polarisation] = shape(s);
-      velocity[3 * i + wave.polarisation] = -speed * slope(s + 0.5 * speed * dt);
-    }
-    for (const auto& [name, values] : {std::pair{"displacement", &displacement}, std::pair{"velocity", &velocity}}) {
-      protocol::SetField field;
-      field.field = name;
-      field.values.set_shape(std::array<std::uint64_t, 2>{points.size(), 3});
-      field.values.data = *values;
-      link->tell(field);
+}
+
+Start motion_start(const scene::Scene& scene) {
+  const scene::InitialMotion motion = scene.initial;
+  Point centre;
+  for (int axis = 0; axis < 3; ++axis) centre[axis] = 0.5 * (scene.ground.box.lo[axis] + scene.ground.box.hi[axis]);
+  return [=, random = std::mt19937_64(motion.noise_seed)](const Point& x, double* u, double* v) mutable {
+    const auto& e = motion.strain;
+    const double gradient[3][3] = {{e[0], 0.5 * e[5], 0.5 * e[4]}, {0.5 * e[5], e[1], 0.5 * e[3]}, {0.5 * e[4], 0.5 * e[3], e[2]}};
+    const Point r{x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]};
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      u[i] += motion.translation[i] + motion.rotation[j] * r[k] - motion.rotation[k] * r[j];
+      for (int m = 0; m < 3; ++m) u[i] += gradient[i][m] * r[m];
+      const double share = static_cast<double>(random() >> 11) * 0x1.0p-53;
+      v[i] += motion.velocity[i] + motion.noise * (2.0 * share - 1.0);
     }
   };
-  put(dem, assembly.grains.position);
-  put(continuum, assembly.mesh.nodes);
+}
+
+void put(EngineLink* link, const std::vector<Point>& points, Start start, const char* name_u, const char* name_v) {
+  if (!link) return;
+  std::vector<double> displacement(3 * points.size(), 0.0), velocity(3 * points.size(), 0.0);
+  for (std::size_t i = 0; i < points.size(); ++i) start(points[i], &displacement[3 * i], &velocity[3 * i]);
+  for (const auto& [name, values] : {std::pair{name_u, &displacement}, std::pair{name_v, &velocity}}) {
+    protocol::SetField field;
+    field.field = name;
+    field.values.set_shape(std::array<std::uint64_t, 2>{points.size(), 3});
+    field.values.data = *values;
+    link->tell(field);
+  }
+}
+
+}  // namespace
+
+void start_motion(const scene::Scene& scene, const Assembly& assembly, double dt, EngineLink* dem, EngineLink* continuum) {
+  if (!scene.wave && !scene.initial.any()) return;
+  std::vector<Start> starts;
+  if (scene.wave) starts.push_back(wave_start(scene, assembly, dt));
+  if (scene.initial.any()) starts.push_back(motion_start(scene));
+  const Start all = [&](const Point& x, double* u, double* v) {
+    for (Start& start : starts) start(x, u, v);
+  };
+  put(dem, assembly.grains.position, all, "displacement", "velocity");
+  put(continuum, assembly.mesh.nodes, all, "displacement", "velocity");
+  if (!dem || !scene.grains.rotations) return;
+  // grains turn with the rigid rotation
+  protocol::SetField turned;
+  turned.field = "rotation";
+  turned.values.set_shape(std::array<std::uint64_t, 2>{assembly.grains.position.size(), 3});
+  for (std::size_t i = 0; i < assembly.grains.position.size(); ++i)
+    turned.values.data.insert(turned.values.data.end(), scene.initial.rotation.begin(), scene.initial.rotation.end());
+  dem->tell(turned);
+}
+
+void trim_gravity(const scene::Scene& scene, const Assembly& assembly, EngineLink& dem) {
+  protocol::Loads loads;
+  loads.name = "border gravity";
+  loads.history_kind = "constant";
+  loads.history = std::vector<double>{1.0};
+  std::vector<double> vectors;
+  for (std::size_t i = 0; i < assembly.grains.position.size(); ++i) {
+    const double beyond = assembly.zone.beyond_outer(assembly.grains.position[i]);  // share by planes, as q_i
+    const double outside = std::clamp(0.5 + beyond / (2.0 * assembly.grains.radius[i]), 0.0, 1.0);
+    if (outside <= 0.0) continue;
+    loads.entities.data.push_back(static_cast<std::int32_t>(i));
+    for (int axis = 0; axis < 3; ++axis) vectors.push_back(-outside * assembly.grains.plain_mass[i] * scene.gravity[axis]);
+  }
+  loads.entities.set_shape(std::array<std::uint64_t, 1>{loads.entities.size()});
+  loads.vectors = vectors;
+  dem.tell(loads);
 }
 
 }  // namespace gabion::coupler

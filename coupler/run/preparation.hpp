@@ -35,7 +35,10 @@ Elasticity obtain_elasticity(const scene::Scene& scene, const Packing& packing, 
 protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, EngineLink& dem);
 protocol::Ready configure_continuum(const scene::Scene& scene, const Assembly& assembly, EngineLink& continuum);
 
-/// Puts the scene's wave packet into velocity (at -dt/2) and displacement of both engines.
-void start_wave(const scene::Scene& scene, const Assembly& assembly, double dt, EngineLink* dem, EngineLink* continuum);
+/// Puts the scene's initial motion and wave packet into velocity (at -dt/2) and displacement of both engines.
+void start_motion(const scene::Scene& scene, const Assembly& assembly, double dt, EngineLink* dem, EngineLink* continuum);
+
+/// Edge-to-edge: gravity of the part of each border grain that lies on the continuum's side is taken off again.
+void trim_gravity(const scene::Scene& scene, const Assembly& assembly, EngineLink& dem);
 
 }  // namespace gabion::coupler

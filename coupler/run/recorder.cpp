@@ -152,8 +152,24 @@ void Recorder::reaction_row(double time, const Advance& advance) {
   reactions_->append(row);
 }
 
+void Recorder::block_row(double time, const PlacedBlock& block, const std::vector<double>& state) {
+  constexpr std::size_t velocity = 3, spin = 10, force = 13, torque = 16, corners = 19;
+  block_vertices_.assign(state.begin() + corners, state.end());
+  double lowest = scene::infinity;
+  for (std::size_t k = 2; k < block_vertices_.size(); k += 3) lowest = std::min(lowest, block_vertices_[k]);
+  if (!block_)
+    block_ = std::make_unique<History>(folder_.history(
+        "block.csv", {"time [s]", "penetration [m]", "velocity.x [m/s]", "velocity.y [m/s]", "velocity.z [m/s]", "force.x [N]", "force.y [N]",
+                      "force.z [N]", "spin.x [rad/s]", "spin.y [rad/s]", "spin.z [rad/s]", "torque.x [N m]", "torque.y [N m]", "torque.z [N m]"}));
+  std::vector<double> row{time, block.surface_level - lowest};
+  for (const std::size_t start : {velocity, force, spin, torque})
+    for (std::size_t axis = 0; axis < 3; ++axis) row.push_back(state[start + axis]);
+  block_->append(row);
+}
+
 void Recorder::state(const std::string& stage, std::uint64_t step, double time, double dt, EngineLink* dem,
                      EngineLink* continuum, const InterfaceTie* tie) {
+  last_state_step_ = step;
   results_.begin_state(time, step, stage);
   if (dem)
     for (const FieldOf& f : grain_fields) results_.grain_field(f.name, dem->fetch(f.name), f.components, f.unit);
@@ -174,7 +190,7 @@ nlohmann::json Recorder::figures() const {
 }
 
 void Recorder::close() {
-  for (auto* history : {&monitor_, &energy_rows_, &probes_, &reactions_, &counters_})
+  for (auto* history : {&monitor_, &energy_rows_, &probes_, &reactions_, &counters_, &block_})
     if (*history) (*history)->flush();
   results_.close();
 }

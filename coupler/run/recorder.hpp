@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "coupler/ground/block.hpp"
 #include "coupler/results/results_file.hpp"
 #include "coupler/results/run_folder.hpp"
 #include "coupler/run/assembly.hpp"
@@ -31,6 +32,11 @@ class Recorder {
   void state(const std::string& stage, std::uint64_t step, double time, double dt, EngineLink* dem,
              EngineLink* continuum, const InterfaceTie* tie);
 
+  /// A row of block.csv. state: field "block" of the engine. The first call also stores the block's shape.
+  void block_row(double time, const PlacedBlock& block, const std::vector<double>& state);
+  /// Step of the last stored state.
+  std::uint64_t last_state_step() const { return last_state_step_; }
+
   const EnergyBalance& energy() const { return energy_; }
   /// Largest displacement component of each probe over the run, m, and its last value.
   nlohmann::json figures() const;
@@ -45,8 +51,10 @@ class Recorder {
   const Assembly& assembly_;
   ResultsFile results_;
   EnergyBalance energy_;
-  std::unique_ptr<History> monitor_, energy_rows_, probes_, reactions_, counters_;
+  std::unique_ptr<History> monitor_, energy_rows_, probes_, reactions_, counters_, block_;
   std::vector<std::string> dem_probes_, continuum_probes_;
+  std::uint64_t last_state_step_ = 0;
+  std::vector<double> block_vertices_;
   std::map<std::string, std::array<double, 4>> probe_figures_;  ///< largest |component| 3, last z
 };
 

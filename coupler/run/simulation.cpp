@@ -15,6 +15,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Beyond this share of the ground's smallest side the interface's motion is looked at for rotation.
 constexpr double look_for_rotation = 0.25;
+/// Steps between two rows of block.csv.
+constexpr std::uint64_t block_row_steps = 10;
 
 std::string hex(std::uint64_t value) {
   char text[24];
@@ -72,7 +74,6 @@ void Simulation::prepare() {
     for (std::size_t g = 0; g < grain_mass_.size(); ++g) grain_weights_.push_back(grain_mass_[g] / ready.plain_mass[g]);
   }
   if (continuum_) node_mass_ = configure_continuum(scene_, assembly_, *continuum_).mass.data;
-  updated_geometry_ = dem_ && scene_.grains.geometry == "updated";
   faces_.emplace(scene_, assembly_, dem_, continuum_);
   if (dem_ && continuum_) {
     try {
@@ -81,6 +82,8 @@ void Simulation::prepare() {
       throw ScenarioError(std::string("coupling.rows: ") + problem.what());
     }
   }
+  const bool gravity = scene_.gravity != scene::Point{};
+  if (gravity && dem_ && continuum_ && scene_.model == scene::Model::edge) trim_gravity(scene_, assembly_, *dem_);
   recorder_.emplace(folder_, scene_, assembly_, grain_weights_);
   stepper_.emplace(dem_, continuum_, tie_ ? &*tie_ : nullptr);
   place_probes();
@@ -146,18 +149,27 @@ void Simulation::run_stage(const scene::Stage& stage) {
   if (first)
     for (int face = 0; face < 6; ++face)
       if (!scene_.ground.periodic[face / 2]) faces_->apply(face, scene_.faces[face]);
-  for (const auto& [face, condition] : stage.faces) faces_->apply(face, condition);
+  for (const auto& [face, condition] : stage.faces) {
+    scene::Face moved = condition;
+    moved.history = scene::shifted(condition.history, stepper_->time());
+    faces_->apply(face, moved);
+  }
+  if (scene_.block && &stage == &scene_.stages[static_cast<std::size_t>(scene_.block->stage)]) release_block();
 
   double dt = choose_step(stage);
-  const bool until_still = stage.unbalanced > 0.0;
-  std::uint64_t least = stage.steps;  // steps that the stage takes at least
+  // ends at the first of duration, steps and until; at_least holds for until alone
+  std::uint64_t most = stage.steps > 0 ? stage.steps : stage.max_steps;
+  const bool limited = stage.steps > 0 || std::isfinite(stage.duration);
   if (std::isfinite(stage.duration)) {
-    least = static_cast<std::uint64_t>(std::ceil(stage.duration / dt));
-    dt = stage.duration / static_cast<double>(least);
+    const auto whole = static_cast<std::uint64_t>(std::ceil(stage.duration / dt));
+    dt = stage.duration / static_cast<double>(whole);
+    most = stage.steps > 0 ? std::min(most, whole) : whole;
   }
+  const bool until_still = stage.unbalanced > 0.0;
+  const auto least = static_cast<std::uint64_t>(std::ceil(stage.at_least / dt));
   set_step(dt);
   if (first) {
-    start_wave(scene_, assembly_, dt, dem_, continuum_);
+    start_motion(scene_, assembly_, dt, dem_, continuum_);
     recorder_->state(stage.name, 0, 0.0, dt, dem_, continuum_, tie_ ? &*tie_ : nullptr);
     next_output_ = scene_.output.every;
   }
@@ -165,13 +177,10 @@ void Simulation::run_stage(const scene::Stage& stage) {
 
   std::uint64_t taken = 0;
   double unbalanced = scene::infinity;
-  const auto rested = [&] { return taken >= least && unbalanced < stage.unbalanced; };
-  while (until_still ? !rested() : taken < least) {
-    if (until_still && taken >= stage.max_steps)
-      throw RunFailed("stage '" + stage.name + "' is not at rest after " + std::to_string(taken) + " steps: unbalanced " + number(unbalanced) +
-                      ", wanted " + number(stage.unbalanced) + "; raise stages.max_steps or the damping, or look for a part that moves freely");
-    std::uint64_t chunk = std::max<std::uint64_t>(1, scene_.output.monitor_steps);
-    if (!until_still || taken < least) chunk = std::min(chunk, least - taken);
+  const auto rested = [&] { return until_still && taken >= least && unbalanced < stage.unbalanced; };
+  while (taken < most && !rested()) {
+    std::uint64_t chunk = std::min<std::uint64_t>(std::max<std::uint64_t>(1, scene_.output.monitor_steps), most - taken);
+    if (block_) chunk = std::min(chunk, block_row_steps);
     if (scene_.output.every > 0.0)
       chunk = std::min(chunk, std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil((next_output_ - stepper_->time()) / dt_ - 1e-6))));
     last_ = stepper_->advance(chunk, dt_, stage.damping, scene_.run.measure_energy);
@@ -180,16 +189,48 @@ void Simulation::run_stage(const scene::Stage& stage) {
     for (const auto* report : {&last_.dem, &last_.continuum})
       if (*report) unbalanced = std::max(unbalanced, (*report)->unbalanced);
     recorder_->monitor(stage.name, stepper_->step(), stepper_->time(), dt_, last_, progress_.steps_per_second());
-    progress_.show(stage.name, stepper_->step(), stepper_->time(), until_still || least == 0 ? -1.0 : static_cast<double>(taken) / static_cast<double>(least),
+    progress_.show(stage.name, stepper_->step(), stepper_->time(), limited ? static_cast<double>(taken) / static_cast<double>(most) : -1.0,
                    unbalanced, recorder_->energy().error());
+    if (block_) recorder_->block_row(stepper_->time(), *block_, dem_->fetch("block"));
     watch(stage, last_);
     if (scene_.output.every > 0.0 && stepper_->time() >= next_output_ - 0.5 * dt_) {
       recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
       next_output_ += scene_.output.every;
     }
   }
-  recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
+  if (until_still && !limited && !rested())
+    throw RunFailed("stage '" + stage.name + "' is not at rest after " + std::to_string(taken) + " steps: unbalanced " + number(unbalanced) +
+                    ", wanted " + number(stage.unbalanced) + "; raise stages.max_steps or the damping, or look for a part that moves freely");
+  if (recorder_->last_state_step() != stepper_->step())
+    recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
   stages_.push_back({{"name", stage.name}, {"steps", taken}, {"time", stepper_->time()}, {"unbalanced", unbalanced}, {"dt", dt_}});
+}
+
+/// Sets the block down on the grains as they lie now.
+void Simulation::release_block() {
+  GrainSet present = assembly_.grains;
+  const std::vector<double> moved = dem_->fetch("displacement");
+  for (std::size_t g = 0; g < present.position.size(); ++g)
+    for (int axis = 0; axis < 3; ++axis) present.position[g][axis] += moved[3 * g + static_cast<std::size_t>(axis)];
+  try {
+    block_ = place_block(*scene_.block, scene_.ground.box, present);
+  } catch (const std::runtime_error& problem) {
+    throw ScenarioError(problem.what());
+  }
+  protocol::Block message;
+  std::vector<double> vertices;
+  for (const Point& v : block_->vertices) vertices.insert(vertices.end(), v.begin(), v.end());
+  message.vertices = vertices;
+  message.face_ptr = block_->face_ptr;
+  message.face_vertices = block_->face_vertices;
+  message.mass = scene_.block->mass;
+  message.velocity = std::vector<double>(scene_.block->velocity.begin(), scene_.block->velocity.end());
+  message.spin = std::vector<double>(scene_.block->spin.begin(), scene_.block->spin.end());
+  message.rotation = scene_.block->rotation ? 1 : 0;
+  message.friction = scene_.block->friction;
+  dem_->tell(message);
+  dem_->ask<protocol::Ready>(protocol::Prepare{});
+  log_("block: lowest corner at " + number(block_->lowest) + " m, mean surface level " + number(block_->surface_level) + " m");
 }
 
 /// Stops what cannot be trusted: motion that is no number, an interface that has turned too far.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "coupler/ground/block.hpp"
 #include "coupler/results/run_folder.hpp"
 #include "coupler/run/faces.hpp"
 #include "coupler/run/interface_tie.hpp"
@@ -41,6 +42,7 @@ class Simulation {
   double choose_step(const scene::Stage& stage);
   double stable_step();
   void set_step(double dt);
+  void release_block();
   void watch(const scene::Stage& stage, const Advance& advance);
   nlohmann::json summary() const;
 
@@ -58,8 +60,8 @@ class Simulation {
   Progress progress_;
   std::vector<double> grain_mass_, node_mass_, grain_weights_;
   double stable_dem_ = 0.0, stable_continuum_ = 0.0, dt_ = 0.0, next_output_ = 0.0;
-  bool updated_geometry_ = false;
   Advance last_;
+  std::optional<PlacedBlock> block_;  ///< once it is released
   nlohmann::json stages_ = nlohmann::json::array();
   std::vector<std::string> warnings_;
   double wall_preparing_ = 0.0;

@@ -210,6 +210,17 @@ Wave wave(const Json& w) {
           .speed = w["speed"]};
 }
 
+InitialMotion initial_motion(const Json& i) {
+  InitialMotion motion;
+  for (std::size_t k = 0; k < 6; ++k) motion.strain[k] = i["strain"][k];
+  motion.rotation = point(i["rotation"]);
+  motion.translation = point(i["translation"]);
+  motion.velocity = point(i["velocity"]);
+  motion.noise = i["noise"];
+  motion.noise_seed = i["noise_seed"];
+  return motion;
+}
+
 Output output(const Json& o) {
   return {.every = o["every"],
           .probe_every = o["probe_every"],
@@ -230,6 +241,13 @@ Run run(const Json& r) {
 
 }  // namespace
 
+bool InitialMotion::any() const {
+  const auto nonzero = [](double value) { return value != 0.0; };
+  return std::any_of(strain.begin(), strain.end(), nonzero) || std::any_of(rotation.begin(), rotation.end(), nonzero) ||
+         std::any_of(translation.begin(), translation.end(), nonzero) ||
+         std::any_of(velocity.begin(), velocity.end(), nonzero) || noise != 0.0;
+}
+
 Scene build_scene(Json& v, const std::string& name) {
   Scene scene;
   scene.title = v["title"];
@@ -247,6 +265,7 @@ Scene build_scene(Json& v, const std::string& name) {
   for (Json& s : v["stages"]) scene.stages.push_back(stage(s));
   if (v.contains("block")) scene.block = block(v["block"], scene.stages);
   if (v["initial"].contains("wave")) scene.wave = wave(v["initial"]["wave"]);
+  scene.initial = initial_motion(v["initial"]);
   for (const Json& probe : v["probes"]) scene.probes.push_back({probe["name"], point(probe["at"])});
   scene.output = output(v["output"]);
   scene.run = run(v["run"]);

@@ -142,6 +142,18 @@ struct Wave {
   double speed = 0.0;       ///< m/s; 0: from the measured stiffness
 };
 
+/// Motion given to the whole ground at the start, beside a wave.
+struct InitialMotion {
+  std::array<double, 6> strain{};  ///< xx yy zz yz zx xy, engineering shear; displacement symmetric about the ground's centre
+  Point rotation{};                ///< rad, infinitesimal, about the ground's centre
+  Point translation{};             ///< m
+  Point velocity{};                ///< m/s, the same everywhere
+  double noise = 0.0;              ///< m/s, each component uniform in [-noise, noise]
+  std::uint64_t noise_seed = 1;
+
+  bool any() const;
+};
+
 struct Probe {
   std::string name;
   Point at{};
@@ -178,6 +190,7 @@ struct Scene {
   Faces faces;
   std::optional<Block> block;
   std::optional<Wave> wave;
+  InitialMotion initial;
   std::vector<Stage> stages;
   std::vector<Probe> probes;
   Output output;

@@ -16,9 +16,10 @@ namespace {
 
 constexpr double least_fraction = 0.05, largest_fraction = 0.74;
 constexpr double most_contacts = 12.0;
-// Thickness that a flat face takes away from the space a dense packing fills, in mean diameters:
-// spheres cannot reach across the face, so the layer along it is looser. Measured at size ratio 2.
-constexpr double face_loss = 0.13;
+// Thickness that a flat face takes away from the space a dense packing fills, in mean diameters by
+// volume: spheres cannot reach across the face, so the layer along it is looser. Measured on boxes of
+// 2 000 to 20 000 grains with size ratio 2 (0.117 to 0.124).
+constexpr double face_loss = 0.118;
 
 void check(const PackingRequest& request, const RadiusDistribution& distribution) {
   const auto refuse = [](const std::string& field, const std::string& message, const std::string& advice) {
@@ -40,10 +41,10 @@ void check(const PackingRequest& request, const RadiusDistribution& distribution
 }
 
 /// Volume that grains fill as densely as the inside of a packing does.
-double filled_volume(const PackingRequest& request, double mean_radius) {
+double filled_volume(const PackingRequest& request, double mean_radius_by_volume) {
   double volume = 1.0;
   for (int a = 0; a < 3; ++a)
-    volume *= request.box.period(a) - (request.box.periodic[a] ? 0.0 : 2.0 * face_loss * 2.0 * mean_radius);
+    volume *= request.box.period(a) - (request.box.periodic[a] ? 0.0 : 2.0 * face_loss * 2.0 * mean_radius_by_volume);
   return volume;
 }
 
@@ -90,7 +91,7 @@ Packing make_packing(const PackingRequest& request) {
   const RadiusDistribution distribution(request.radius_kind, request.radius);
   check(request, distribution);
   Random random(request.seed);
-  const double filled = filled_volume(request, distribution.mean_radius());
+  const double filled = filled_volume(request, distribution.mean_radius_by_volume());
   const std::vector<double> radii = draw_radii(distribution, request.solid_fraction * filled, random);
   VecField centres = random_places(request, radii.size(), random);
   const RelaxationOutcome relaxed = grow_and_relax(centres, radii, request.box);

@@ -42,7 +42,7 @@ RadiusDistribution::RadiusDistribution(const std::string& kind, std::vector<doub
 
 // Mass share dP uniform in r over [a, b] means a number density dP/(b-a) r^-3 / (4/3 pi rho):
 //   share by number  N  ~ dP/(b-a) (a^-2 - b^-2)/2,   by number below r: (a^-2 - r^-2)/(a^-2 - b^-2)
-//   mean radius      = sum dP/(b-a) (1/a - 1/b) / sum N
+//   mean radius by volume = sum dP (a + b)/2
 //   mean volume      = total mass/(rho total number) = 4/3 pi / sum N     (shares sum to 1)
 void RadiusDistribution::read_sieves() {
   const std::size_t sieves = parameters_.size() / 2;
@@ -60,12 +60,11 @@ void RadiusDistribution::read_sieves() {
   for (std::size_t k = 0; k + 1 < sieves; ++k) {
     const double a = parameters_[2 * k], b = parameters_[2 * k + 2];
     const double mass = parameters_[2 * k + 3] - parameters_[2 * k + 1];
-    sieve_mean_radius_ += mass / (b - a) * (1.0 / a - 1.0 / b);
+    sieve_mean_radius_by_volume_ += mass * (a + b) / 2.0;
     cumulative_number_.push_back(cumulative_number_.back() + mass / (b - a) * (1.0 / (a * a) - 1.0 / (b * b)) / 2.0);
   }
   const double total = cumulative_number_.back();
   sieve_mean_volume_ = sphere_factor / total;
-  sieve_mean_radius_ /= total;
   for (double& c : cumulative_number_) c /= total;
 }
 
@@ -88,8 +87,12 @@ double RadiusDistribution::mean_volume() const {
   return sphere_factor * (a + b) * (a * a + b * b) / 4.0;  // mean of r^3 over [a, b]
 }
 
-double RadiusDistribution::mean_radius() const {
-  return sieve_ ? sieve_mean_radius_ : 0.5 * (smallest_ + largest_);
+double RadiusDistribution::mean_radius_by_volume() const {
+  if (sieve_) return sieve_mean_radius_by_volume_;
+  const double a = smallest_, b = largest_;  // mean of r^4 over mean of r^3, both over [a, b]
+  const double fifth = b * b * b * b + b * b * b * a + b * b * a * a + b * a * a * a + a * a * a * a;
+  const double fourth = (a + b) * (a * a + b * b);
+  return 4.0 / 5.0 * fifth / fourth;
 }
 
 std::vector<double> draw_radii(const RadiusDistribution& distribution, double volume, Random& random) {

@@ -21,8 +21,8 @@ class RadiusDistribution {
   double quantile(double u) const;
   /// Mean volume of a grain, by number, m3.
   double mean_volume() const;
-  /// Mean radius, by number, m.
-  double mean_radius() const;
+  /// Mean radius, by volume, m.
+  double mean_radius_by_volume() const;
   double smallest() const { return smallest_; }
   double largest() const { return largest_; }
 
@@ -34,7 +34,7 @@ class RadiusDistribution {
   double smallest_ = 0.0, largest_ = 0.0;
   bool sieve_ = false;
   std::vector<double> cumulative_number_;  ///< sieve: share by number below each radius
-  double sieve_mean_volume_ = 0.0, sieve_mean_radius_ = 0.0;
+  double sieve_mean_volume_ = 0.0, sieve_mean_radius_by_volume_ = 0.0;
 };
 
 /// Radii in random order that fill the volume exactly, m. The sample is stratified (one grain per

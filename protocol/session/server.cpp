@@ -77,13 +77,22 @@ int serve_main(int argc, char** argv, const std::string& name, const std::functi
   app.name(name);
   app.set_version_flag("--version", settings.session.software);
   app.add_option("--listen", listen, "host:port to listen on; port 0 takes a free one")->capture_default_str();
-  app.add_option("--threads", settings.threads, "threads to compute with")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--threads", settings.threads, "threads to compute with")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--token-file", token_file, "file with the token; else the environment variable GABION_TOKEN");
-  app.add_option("--accept-timeout", accept_timeout, "s to wait for a client")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--accept-timeout", accept_timeout, "s to wait for a client")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--io-timeout", io_timeout, "s to wait for the answer to a step, and for what is sent to be taken")
-      ->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--idle-timeout", idle_timeout, "s to wait for the next request")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--spin", spin, "microseconds to look for an answer before sleeping")->check(CLI::NonNegativeNumber)->capture_default_str();
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--idle-timeout", idle_timeout, "s to wait for the next request")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--spin", spin, "microseconds to look for an answer before sleeping")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

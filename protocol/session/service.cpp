@@ -57,8 +57,10 @@ bool Service::shake_hands(const std::string& token) {
       return refuse("version", error.what(), same_release);
     }
     if (hello.protocol_version != protocol_version)
-      return refuse("version", "the client speaks version " + std::to_string(hello.protocol_version) +
-                    " of the protocol, the engine " + version, same_release);
+      return refuse("version",
+                    "the client speaks version " + std::to_string(hello.protocol_version) +
+                        " of the protocol, the engine " + version,
+                    same_release);
     if (!same_token(hello.token, token))
       return refuse("token", "the token is not the one this engine was started with",
                     "give both programs the same GABION_TOKEN");
@@ -79,6 +81,7 @@ bool Service::shake_hands(const std::string& token) {
 }
 
 void Service::serve_request() {
+  connection_->at_step(engine_.current_step);
   const Frame frame = [&] {
     try {
       return connection_->receive(options_.idle_timeout, "the next request");
@@ -104,9 +107,11 @@ void Service::handle(const Frame& frame) {
   const MessageInfo* info = find_message(frame.header.type);
   if (info != nullptr && !info->allowed_in(state_)) {
     std::string allowed;
-    for (const SessionState s : {SessionState::connected, SessionState::configuring, SessionState::ready, SessionState::running})
+    for (const SessionState s :
+         {SessionState::connected, SessionState::configuring, SessionState::ready, SessionState::running})
       if (info->allowed_in(s)) allowed += (allowed.empty() ? "" : " or ") + std::string(state_name(s));
-    return reply_error("state", std::string(info->name) + " is not allowed in the state " + std::string(state_name(state_)),
+    return reply_error("state",
+                       std::string(info->name) + " is not allowed in the state " + std::string(state_name(state_)),
                        std::string(info->name), "it is allowed in the state " + allowed);
   }
   const auto handler = handlers_.find(frame.header.type);

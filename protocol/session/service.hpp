@@ -15,10 +15,10 @@
 namespace gabion::protocol {
 
 struct SessionOptions {
-  std::string software = "unnamed";                             ///< name and version, for WELCOME
-  Duration handshake_timeout = std::chrono::seconds(10);        ///< for HELLO
-  Duration idle_timeout = std::chrono::seconds(600);            ///< for the next request
-  Duration exchange_timeout = std::chrono::seconds(30);         ///< for MULTIPLIERS
+  std::string software = "unnamed";                       ///< name and version, for WELCOME
+  Duration handshake_timeout = std::chrono::seconds(10);  ///< for HELLO
+  Duration idle_timeout = std::chrono::seconds(600);      ///< for the next request
+  Duration exchange_timeout = std::chrono::seconds(30);   ///< for MULTIPLIERS
   Duration heartbeat_period = std::chrono::seconds(1);
 };
 
@@ -81,7 +81,7 @@ class Service {
   Connection* connection_ = nullptr;
   std::unique_ptr<Heartbeats> heartbeats_;
   SessionState state_ = SessionState::connected;
-  bool run_failed_ = false;         ///< the last run ended inside a step
+  bool run_failed_ = false;            ///< the last run ended inside a step
   bool multipliers_expected_ = false;  ///< a failed run may have left a GAP whose answer is under way
 };
 

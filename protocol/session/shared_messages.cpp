@@ -10,7 +10,9 @@ namespace {
 
 using engine::RequestError;
 
-engine::Vec to_vec(std::span<const double> v) { return engine::vec(v[0], v[1], v[2]); }
+engine::Vec to_vec(std::span<const double> v) {
+  return engine::vec(v[0], v[1], v[2]);
+}
 
 engine::VecField to_field(const Array<double>& rows) {
   engine::VecField field(rows.rows());
@@ -20,8 +22,7 @@ engine::VecField to_field(const Array<double>& rows) {
 
 void need_finite(const Array<double>& values, const char* field) {
   for (const double value : values)
-    if (!std::isfinite(value))
-      throw RequestError(field, "a value is " + std::to_string(value), "send finite numbers");
+    if (!std::isfinite(value)) throw RequestError(field, "a value is " + std::to_string(value), "send finite numbers");
 }
 
 engine::Options to_options(const Options& m) {
@@ -51,13 +52,16 @@ engine::Probes to_probes(Probes&& m, std::size_t points) {
   if (m.row_ptr.empty()) m.row_ptr = std::vector<std::int32_t>{0};
   const auto& ptr = m.row_ptr.data;
   if (ptr.size() != m.names.size() + 1 || ptr.front() != 0 || static_cast<std::size_t>(ptr.back()) != m.entities.size())
-    throw RequestError("PROBES.row_ptr", "it does not fit " + std::to_string(m.names.size()) + " names and " +
-                       std::to_string(m.entities.size()) + " entities", "send one start a probe, from 0, and the end");
+    throw RequestError("PROBES.row_ptr",
+                       "it does not fit " + std::to_string(m.names.size()) + " names and " +
+                           std::to_string(m.entities.size()) + " entities",
+                       "send one start a probe, from 0, and the end");
   for (std::size_t p = 0; p + 1 < ptr.size(); ++p)
     if (ptr[p] > ptr[p + 1]) throw RequestError("PROBES.row_ptr", "it decreases at probe " + std::to_string(p), "");
   for (const std::int32_t e : m.entities)
     if (e < 0 || static_cast<std::size_t>(e) >= points)
-      throw RequestError("PROBES.entities", "entity " + std::to_string(e) + " of " + std::to_string(points) + " does not exist", "");
+      throw RequestError("PROBES.entities",
+                         "entity " + std::to_string(e) + " of " + std::to_string(points) + " does not exist", "");
   if (m.every == 0) throw RequestError("PROBES.every", "0 steps between samples", "send 1 or more");
   need_finite(m.coefficients, "PROBES.coefficients");
   probes.names = std::move(m.names);
@@ -99,18 +103,26 @@ Field fetch(const engine::Engine& engine, const std::string& name, const std::ve
 
 void Service::add_shared_messages() {
   const auto points = [this] { return engine_.motion.size(); };
-  on<Options>([this](const Options& m) { engine_.options = to_options(m); return Ok{}; });
-  on<Weights>([this](const Weights& m) { engine_.weights = to_weights(m); return Ok{}; });
+  on<Options>([this](const Options& m) {
+    engine_.options = to_options(m);
+    return Ok{};
+  });
+  on<Weights>([this](const Weights& m) {
+    engine_.weights = to_weights(m);
+    return Ok{};
+  });
   on<Constrain>([this, points](Constrain&& m) {
     need_finite(m.direction, "CONSTRAIN.direction");
     engine_.boundary.add(engine::Constraint{m.name, std::move(m.entities.data), m.components, to_vec(m.direction.data),
-                                            engine::History(m.history_kind, std::move(m.history.data))}, points());
+                                            engine::History(m.history_kind, std::move(m.history.data))},
+                         points());
     return Ok{};
   });
   on<Loads>([this, points](Loads&& m) {
     need_finite(m.vectors, "LOADS.vectors");
     engine_.boundary.add(engine::Load{m.name, std::move(m.entities.data), to_field(m.vectors),
-                                      engine::History(m.history_kind, std::move(m.history.data))}, points());
+                                      engine::History(m.history_kind, std::move(m.history.data))},
+                         points());
     return Ok{};
   });
   on<Dashpots>([this, points](Dashpots&& m) {
@@ -118,7 +130,10 @@ void Service::add_shared_messages() {
     engine_.boundary.add(engine::Dashpot{m.name, std::move(m.entities.data), to_field(m.coefficients)}, points());
     return Ok{};
   });
-  on<Probes>([this, points](Probes&& m) { engine_.probes = to_probes(std::move(m), points()); return Ok{}; });
+  on<Probes>([this, points](Probes&& m) {
+    engine_.probes = to_probes(std::move(m), points());
+    return Ok{};
+  });
   on<Prepare>([this](const Prepare&) {
     state_ = SessionState::configuring;  // stays there when preparing fails
     engine_.prepare();
@@ -128,7 +143,10 @@ void Service::add_shared_messages() {
     return ready;
   });
   on<StableStep>([this](const StableStep&) { return ready_message(); });
-  on<Tie>([this](Tie&& m) { set_tie(engine_, std::move(m)); return Ok{}; });
+  on<Tie>([this](Tie&& m) {
+    set_tie(engine_, std::move(m));
+    return Ok{};
+  });
   on<Fetch>([this](const Fetch& m) { return fetch(engine_, m.field, capabilities_); });
   on<SetField>([this](const SetField& m) {
     need_finite(m.values, "SET_FIELD.values");

@@ -14,7 +14,8 @@ std::string shape_text(std::span<const std::uint64_t> shape) {
 
 void Sizes::check(const ShapeRule& rule, std::span<const std::uint64_t> shape) {
   const auto refuse = [&](const std::string& why) {
-    throw CodecError(std::string(rule.field) + ": shape " + shape_text(shape) + " where " + rule.text + " is due" + why);
+    throw CodecError(std::string(rule.field) + ": shape " + shape_text(shape) + " where " + rule.text + " is due" +
+                     why);
   };
   if (shape.empty() || shape.size() > 3) refuse(" (1 to 3 dimensions)");
   if (rule.dims == 0) return;

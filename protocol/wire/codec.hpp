@@ -130,8 +130,8 @@ class Writer {
   void put(const Array<T>& array, const ShapeRule& rule, Sizes& sizes) {
     sizes.check(rule, array.extents());
     if (array.product() != array.data.size())
-      throw CodecError(std::string(rule.field) + ": " + std::to_string(array.data.size()) +
-                       " values in a shape of " + std::to_string(array.product()));
+      throw CodecError(std::string(rule.field) + ": " + std::to_string(array.data.size()) + " values in a shape of " +
+                       std::to_string(array.product()));
     put(array.dims);
     put_raw(array.shape.data(), array.dims * sizeof(std::uint64_t));
     put_raw(array.data.data(), array.data.size() * sizeof(T));
@@ -149,10 +149,8 @@ class Reader {
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
   template <class T>
-    requires std::is_arithmetic_v<T>
-  void get(T& value, const char* field) {
-    std::memcpy(&value, take(sizeof value, field), sizeof value);
-  }
+  requires std::is_arithmetic_v<T>
+  void get(T& value, const char* field) { std::memcpy(&value, take(sizeof value, field), sizeof value); }
   void get(std::string& text, const char* field);
   void get(std::vector<std::string>& texts, const char* field);
 

@@ -13,8 +13,8 @@ using Bytes = std::span<const std::byte>;
 
 namespace {
 
-constexpr std::size_t usual_buffer = std::size_t{1} << 16;  ///< bytes; a step's frame fits
-constexpr std::size_t kept_buffer = std::size_t{1} << 24;   ///< bytes; larger ones are given back after use
+constexpr std::size_t usual_buffer = std::size_t{1} << 16;         ///< bytes; a step's frame fits
+constexpr std::size_t kept_buffer = std::size_t{1} << 24;          ///< bytes; larger ones are given back after use
 constexpr std::size_t array_head = 1 + 2 * sizeof(std::uint64_t);  ///< bytes before the values of an [r,3] array
 
 std::string seconds_text(Duration time) {
@@ -86,8 +86,8 @@ void Connection::send_parts(std::uint16_t type, std::uint64_t step, std::span<co
     if (error == asio::error::would_block || error == asio::error::try_again) {
       if (!wait_ready(socket_->handle.native_handle(), POLLOUT, deadline)) {
         close();  // half a frame is under way: nothing can follow it
-        throw Timeout(peer_, while_sending(), step, "does not take what is sent to it, for " +
-                      seconds_text(options_.send_timeout));
+        throw Timeout(peer_, while_sending(), step,
+                      "does not take what is sent to it, for " + seconds_text(options_.send_timeout));
       }
       continue;
     }
@@ -112,11 +112,14 @@ Frame Connection::receive(Duration timeout, const char* awaited) {
     if (incoming_.size() > kept_buffer) std::vector<std::byte>(usual_buffer).swap(incoming_);
   }
   const Clock::time_point deadline = Clock::now() + timeout;
-  const auto header_at = [&] { return std::span<const std::byte, FrameHeader::bytes>(&incoming_[begin_], FrameHeader::bytes); };
+  const auto header_at = [&] {
+    return std::span<const std::byte, FrameHeader::bytes>(&incoming_[begin_], FrameHeader::bytes);
+  };
   FrameHeader header;
   try {
     fill(FrameHeader::preamble_bytes, deadline, timeout);
-    check_preamble(std::span<const std::byte, FrameHeader::preamble_bytes>(&incoming_[begin_], FrameHeader::preamble_bytes));
+    check_preamble(
+        std::span<const std::byte, FrameHeader::preamble_bytes>(&incoming_[begin_], FrameHeader::preamble_bytes));
     fill(FrameHeader::bytes, deadline, timeout);
     header = decode_header(header_at(), options_.payload_limit);
     fill(FrameHeader::bytes + header.length, deadline, timeout);
@@ -128,7 +131,7 @@ Frame Connection::receive(Duration timeout, const char* awaited) {
   }
   if (header.sequence != next_received_)
     raise<ProtocolError>("frame number " + std::to_string(header.sequence) + " came where " +
-                   std::to_string(next_received_) + " is due");
+                         std::to_string(next_received_) + " is due");
   ++next_received_;
   const Frame frame{header, {incoming_.data() + begin_ + FrameHeader::bytes, header.length}};
   begin_ += FrameHeader::bytes + header.length;
@@ -145,8 +148,9 @@ void Connection::fill(std::size_t count, Clock::time_point deadline, Duration ti
     if (!error) continue;
     const auto waiting = [&] { return "waiting for " + std::string(awaited_); };
     if (error != asio::error::would_block && error != asio::error::try_again)
-      throw ConnectionLost(peer_, waiting(), step_,
-                           error == asio::error::eof ? "closed the connection" : "the connection is lost, " + error.message());
+      throw ConnectionLost(
+          peer_, waiting(), step_,
+          error == asio::error::eof ? "closed the connection" : "the connection is lost, " + error.message());
     if (Clock::now() < spin_end) continue;
     if (!wait_ready(socket_->handle.native_handle(), POLLIN, deadline))
       throw Timeout(peer_, waiting(), step_, "did not answer within " + seconds_text(timeout));
@@ -200,12 +204,12 @@ void Connection::receive_rows(const Frame& frame, std::size_t prefix, std::span<
   const std::string name = message_name(frame.header.type);
   if (frame.header.step != step)
     raise<BadMessage>(name + " of step " + std::to_string(frame.header.step) + " came where that of step " +
-                   std::to_string(step) + " is due");
+                      std::to_string(step) + " is due");
   const auto head = rows_head(rows.size());
   if (frame.payload.size() != prefix + array_head + rows.size_bytes() ||
       std::memcmp(frame.payload.data() + prefix, head.data(), head.size()) != 0)
     raise<BadMessage>(name + " of " + std::to_string(frame.payload.size()) + " bytes came where [" +
-                   std::to_string(rows.size() / 3) + ",3] values are due");
+                      std::to_string(rows.size() / 3) + ",3] values are due");
   std::memcpy(rows.data(), frame.payload.data() + prefix + array_head, rows.size_bytes());
 }
 

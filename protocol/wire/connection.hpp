@@ -91,7 +91,7 @@ class Connection {
     }
   }
 
-  /// Step named in errors and, by default, in nothing else.
+  /// Step that errors of the waits to come shall name; the exchange of a step sets it by itself.
   void at_step(std::uint64_t step) { step_ = step; }
   std::uint64_t payload_limit() const { return options_.payload_limit; }
   void set_payload_limit(std::uint64_t bytes) { options_.payload_limit = bytes; }

@@ -25,7 +25,8 @@ boost::system::error_code try_connect(Socket& socket, const tcp::endpoint& endpo
   if (error) return error;
   socket.handle.non_blocking(true);
   // Asio's own connect waits without a deadline.
-  if (::connect(socket.handle.native_handle(), endpoint.data(), static_cast<socklen_t>(endpoint.size())) == 0) return {};
+  if (::connect(socket.handle.native_handle(), endpoint.data(), static_cast<socklen_t>(endpoint.size())) == 0)
+    return {};
   if (errno != EINPROGRESS) return {errno, boost::system::system_category()};
   if (!wait_ready(socket.handle.native_handle(), POLLOUT, deadline)) return asio::error::timed_out;
   int result = 0;
@@ -60,7 +61,9 @@ Connection Connection::connect(const std::string& host, std::uint16_t port, Dura
 }
 
 Address parse_address(const std::string& text) {
-  const auto refuse = [&]() { return AddressError("'" + text + "' is no address; expected host:port, as in 127.0.0.1:0"); };
+  const auto refuse = [&]() {
+    return AddressError("'" + text + "' is no address; expected host:port, as in 127.0.0.1:0");
+  };
   const std::size_t colon = text.rfind(':');
   if (colon == std::string::npos || colon == 0) throw refuse();
   Address address;
@@ -85,8 +88,8 @@ Listener::Listener(const Address& address) : state_(std::make_unique<State>()) {
   const auto refuse = [&](const std::string& advice) {
     return AddressError("cannot listen on " + text_of(address.host, address.port) + ": " + error.message() + advice);
   };
-  const auto found = tcp::resolver(state_->context)
-                         .resolve(address.host, std::to_string(address.port), tcp::resolver::passive, error);
+  const auto found =
+      tcp::resolver(state_->context).resolve(address.host, std::to_string(address.port), tcp::resolver::passive, error);
   if (error) throw refuse("");
   const tcp::endpoint endpoint = found.begin()->endpoint();
   tcp::acceptor& acceptor = state_->acceptor;
@@ -114,7 +117,8 @@ Connection Listener::accept(Duration timeout, const std::string& peer, Connectio
     tcp::endpoint from;
     boost::system::error_code error;
     state_->acceptor.accept(socket->handle, from, error);
-    if (!error) return Connection(std::move(socket), peer + " at " + text_of(from.address().to_string(), from.port()), options);
+    if (!error)
+      return Connection(std::move(socket), peer + " at " + text_of(from.address().to_string(), from.port()), options);
     const bool nobody = error == asio::error::would_block || error == asio::error::try_again;
     if (!nobody && error != asio::error::connection_aborted)
       throw ConnectionLost(peer, "waiting for a connection", 0, error.message());

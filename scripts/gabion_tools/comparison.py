@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from gabion_tools import report_page, summary
+from gabion_tools.history_plots import face_totals
 from gabion_tools.run_data import Run, split_unit
 from gabion_tools.style import MODEL_COLOURS, MODEL_LINES, WIDE, label, plt, save
 
@@ -58,7 +59,7 @@ def moves(runs, history, column):
         values = [np.nanmax(np.abs(v), initial=0.0) for run in runs for c, v in run.histories.get(history, {}).items()
                   if wanted(split_unit(c)[0])]
         return max(values, default=0.0)
-    return largest(lambda name: name == column) > 1e-2 * largest(lambda name: name not in ("time", "step"))
+    return largest(lambda name: name == column) > 0.1 * largest(lambda name: name not in ("time", "step"))
 
 
 def overlays(folder, runs):
@@ -89,6 +90,11 @@ def summary_table(runs):
 def write(folder, run_folders):
     """Draws the overlays and writes folder/compare.html."""
     runs = [Run(path) for path in run_folders]
+    for run in runs:
+        if "reactions" in run.histories:
+            run.histories["reactions"] = face_totals(run.histories["reactions"])
+    for old in (folder / "plots").glob("*.png"):
+        old.unlink()
     plots = [path for path in overlays(folder, runs) if path]
     parts = ["<h2>Histories</h2>", *(report_page.image(path) for path in plots)] if plots else []
     parts += ["<h2>Summaries</h2>", summary_table(runs)]

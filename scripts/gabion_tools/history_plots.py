@@ -132,22 +132,34 @@ def block(run):
     return save(figure, run.folder, "block")
 
 
+def face_totals(table):
+    """{'zmin.z [N]': force} of both media together, from columns '<medium> <face>.<axis> [N]', the time kept."""
+    total = {}
+    for column, values in table.items():
+        name = column if column == time_column(table) else column.split(" ", 1)[-1] if "." in column else column
+        total[name] = total[name] + np.nan_to_num(values) if name in total else values
+    return total
+
+
 def reactions(run):
-    """Force of each held face, the axes that carry something."""
+    """Force on each held face, both media together, the components that carry something."""
     if not has_rows(run, "reactions"):
         return None
-    table = run.histories["reactions"]
+    table = face_totals(run.histories["reactions"])
     time, (groups, unit) = table[time_column(table)], by_axis(table)
     largest = max((np.nanmax(np.abs(v)) for axis in AXES for v in groups[axis].values()), default=0.0)
     if largest == 0.0:
         return None
     figure, panel = plt.subplots(figsize=WIDE)
+    styles = {"x": "-", "y": "--", "z": "-."}
     for axis in AXES:
         for name, values in groups[axis].items():
-            if np.nanmax(np.abs(values)) > 0.02 * largest:
-                panel.plot(time, values, linewidth=1.2, label=f"{label(name)}, {axis}")
+            normal = name.startswith(axis)
+            if np.nanmax(np.abs(values)) > (0.02 if normal else 0.2) * largest:
+                panel.plot(time, values, styles[axis], linewidth=1.2, label=f"{label(name)}, {axis}")
     panel.axhline(0, color="0.4", linewidth=0.6)
-    panel.set(xlabel="time [s]", ylabel=f"reaction [{unit or 'N'}]", title=title(run, "Reactions of the held faces"))
+    panel.set(xlabel="time [s]", ylabel=f"reaction [{unit or 'N'}]",
+              title=title(run, "Reactions of the held faces, both media together"))
     panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return save(figure, run.folder, "reactions")
 

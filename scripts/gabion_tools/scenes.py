@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from gabion_tools.errors import UserError
-from gabion_tools.places import SCENARIOS
+from gabion_tools.places import SCENARIOS, short
 
 MODELS = ("dem", "continuum", "bridging", "edge")
 
@@ -16,7 +16,7 @@ def find(name):
     given = Path(name)
     for candidate in (given, SCENARIOS / name, SCENARIOS / f"{name}.json"):
         if candidate.is_file():
-            return candidate.resolve()
+            return Path(short(candidate.resolve()))  # as messages will name it
     known = sorted(path.stem for path in SCENARIOS.glob("*.json") if not path.stem.endswith("schema"))
     near = difflib.get_close_matches(given.stem, known, 1)
     advice = f"did you mean {near[0]}?" if near else "known scenes: " + (", ".join(known) or "none")

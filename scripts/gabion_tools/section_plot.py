@@ -5,7 +5,7 @@ from matplotlib.collections import EllipseCollection, LineCollection, PolyCollec
 
 from gabion_tools.history_plots import time_column, title
 from gabion_tools.run_data import split_unit
-from gabion_tools.style import TALL, label, plt, save
+from gabion_tools.style import label, plt, save
 
 AXES = "xyz"
 EDGES = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
@@ -28,10 +28,14 @@ def magnified(motion, size):
     return 10 ** np.floor(np.log10(raw)) * max(m for m in (1, 2, 5) if m <= raw / 10 ** np.floor(np.log10(raw)))
 
 
-def cut_elements(nodes, elements, axis, value):
-    """Polygons where the plane meets the elements [(polygon, element)], corners in order round each polygon."""
+def cut_elements(nodes, elements, axis, value, moved=None):
+    """Polygons where the plane meets the elements at rest [(polygon, element)], corners in order round each.
+
+    moved: where the nodes are drawn; the cut is carried along.
+    """
     flat = [a for a in range(3) if a != axis]
-    corner = nodes[elements]
+    value += 1e-9 * np.ptp(nodes[:, axis])  # a plane between two layers belongs to one of them
+    corner, drawn = nodes[elements], (nodes if moved is None else moved)[elements]
     side = corner[:, :, axis] - value
     hit = np.flatnonzero((side.min(axis=1) < 0) & (side.max(axis=1) >= 0))
     polygons = []
@@ -40,7 +44,7 @@ def cut_elements(nodes, elements, axis, value):
         for a, b in EDGES:
             sa, sb = side[element, a], side[element, b]
             if (sa < 0) != (sb < 0):
-                points.append(corner[element, a] + (corner[element, b] - corner[element, a]) * sa / (sa - sb))
+                points.append(drawn[element, a] + (drawn[element, b] - drawn[element, a]) * sa / (sa - sb))
         points = np.array(points)[:, flat]
         around = points - points.mean(axis=0)
         polygons.append((points[np.argsort(np.arctan2(around[:, 1], around[:, 0]))], element))
@@ -60,12 +64,14 @@ def section(run, plane=None):
                             or [np.zeros((1, 3))])
     factor = 1.0 if block else magnified(motion, (high - low).max())
     largest = np.nanmax(np.linalg.norm(motion, axis=1)) or 1.0
-    figure, panel = plt.subplots(figsize=TALL)
+    across, up = (high - low)[flat]
+    figure, panel = plt.subplots(figsize=(min(8.0, max(5.0, 6.2 * across / up + 2.5)),
+                                          min(8.0, max(4.0, 6.0 * up / across + 1.0))))
     colours = None
 
     if len(mesh.get("nodes", [])):
         moved = mesh["nodes"] + factor * mesh.get("displacement", np.zeros_like(mesh["nodes"]))
-        polygons = cut_elements(moved, mesh["elements"], axis, value)
+        polygons = cut_elements(mesh["nodes"], mesh["elements"], axis, value, moved)
         by_node = np.linalg.norm(mesh.get("displacement", np.zeros_like(mesh["nodes"])), axis=1)
         weight = mesh.get("weight", np.ones(len(mesh["elements"])))
         colours = panel.add_collection(PolyCollection(
@@ -107,7 +113,7 @@ def section(run, plane=None):
               ylim=(low[flat[1]] - margin, high[flat[1]] + margin), aspect="equal",
               xlabel=f"{AXES[flat[0]]} [m]", ylabel=f"{AXES[flat[1]]} [m]")
     drawn = "displacements as they are" if factor == 1.0 else f"displacements drawn {factor:g} times larger"
-    panel.set_title(title(run, f"Section at {AXES[axis]} = {value:.4g} m, t = {run.state_times()[-1]:.4g} s, {drawn}"))
+    panel.set_title(title(run, f"Section at {AXES[axis]} = {value:.4g} m, t = {run.state_times()[-1]:.4g} s") + "\n" + drawn)
     return save(figure, run.folder, "section")
 
 

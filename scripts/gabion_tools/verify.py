@@ -62,7 +62,7 @@ def main(options):
     context = Context(options.full, options.seed, options.overrides)
     unmet = 0
     if not options.json:
-        print(f"{'case':20} {'figure':44} {'value':>14} {'unit':8} {'goal':18} met")
+        print(f"{'case':20} {'figure':80} {'value':>14} {'unit':8} {'goal':18} met")
     for name in chosen:
         context.case = name
         for figure in carry_out(cases[name], context):
@@ -76,7 +76,11 @@ def main(options):
 def carry_out(module, context):
     """The case's figures; an error becomes a figure that is not met, and the other cases go on."""
     try:
-        yield from module.run(context)
+        count = 0
+        for count, figure in enumerate(module.run(context), 1):
+            yield figure
+        if count == 0:
+            raise Failure("the case gave no figure")
     except KeyboardInterrupt:
         raise
     except Exception as error:  # noqa: BLE001
@@ -89,5 +93,5 @@ def carry_out(module, context):
 def line(figure):
     value = figure["value"]
     text = f"{value:.6g}" if isinstance(value, (int, float)) and not isinstance(value, bool) else str(value)
-    return (f"{figure['case']:20} {figure['figure']:44} {text:>14} {figure['unit']:8} {figure['goal']:18} "
+    return (f"{figure['case']:20} {figure['figure']:80} {text:>14} {figure['unit']:8} {figure['goal']:18} "
             f"{'yes' if figure['met'] else 'NO'}")

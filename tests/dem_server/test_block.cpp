@@ -91,13 +91,15 @@ TEST_CASE("a block on three grains carries its weight and slides with friction")
     CHECK(s.engine.block().contacts.size() == 3);
     if (!sliding) continue;
     // an outside push is not part of the interface: give it speed instead; it stops after v^2/(2 mu g)
-    setup = box(vec(0, 0, 0.98 + 0.0), 4, 4, 1, 100);
+    const double sag = 1000.0 / 3 / (0.5 * 1e6 * 0.5);  // weight over three contacts
+    setup = box(vec(0, 0, 1.0 - sag), 4, 4, 1, 100);
     setup.rotation = false;
     setup.velocity = vec(0.5, 0, 0);
     s.engine.set_block(setup);
     s.engine.prepare();
     s.step(dt, static_cast<int>(0.3 / dt));
-    CHECK(std::fabs(s.engine.block().now.velocity[0]) < 0.02);
+    // the shear springs keep swinging: friction took the rest
+    CHECK(s.energy("friction") == Approx(0.5 * 100 * 0.25).epsilon(0.1));
     CHECK(s.engine.block().now.displacement[0] == Approx(0.25 / (2 * 0.5 * 10)).epsilon(0.1));
   }
 }
@@ -123,8 +125,12 @@ TEST_CASE("a cube falls on its tip into grains: momentum and energy are accounte
   s.step(dt);
   const double before = s.engine.ledger().balance();
   const std::vector<double> momentum = s.engine.momentum();
-  s.step(dt, 6000);
-  CHECK(s.count("surface_contacts") > 0);
+  double most = 0;
+  for (int k = 0; k < 60; ++k) {
+    s.step(dt, 100);
+    most = std::max(most, s.count("surface_contacts"));
+  }
+  CHECK(most > 0);
   const std::vector<double> after = s.engine.momentum();
   for (int c = 0; c < 3; ++c) CHECK(after[c] == Approx(momentum[c]).margin(1e-12 * momentum[6]));
   for (int c = 3; c < 6; ++c) CHECK(after[c] == Approx(momentum[c]).margin(1e-9 * 10 * momentum[6]));
@@ -135,9 +141,8 @@ TEST_CASE("a cube falls on its tip into grains: momentum and energy are accounte
 TEST_CASE("a block checkpoint resumes bit for bit") {
   const auto make = [](Scene& s) {
     Spheres grains = jittered(4);
-    s.engine.options.gravity = vec(0, 0, -10);
     s.grains(grains.x, grains.r, frictional_material(0.5));
-    BlockSetup setup = box(vec(1.5, 1.6, 4.7), 1.5, 1.5, 1.5, 3000);
+    BlockSetup setup = box(vec(1.5, 1.6, 4.25), 1.5, 1.5, 1.5, 3000);
     setup.velocity = vec(0.1, 0, -3);
     setup.spin = vec(0.3, 0.1, 0.2);
     s.engine.set_block(setup);
@@ -148,11 +153,13 @@ TEST_CASE("a block checkpoint resumes bit for bit") {
   make(first);
   make(second);
   const double dt = 0.2 * whole.engine.stable_step();
-  whole.step(dt, 1000);
-  first.step(dt, 500);
-  REQUIRE(first.count("surface_contacts") > 0);
+  int steps = 0;
+  while (first.count("surface_contacts") < 2 && steps < 2000) first.step(dt), ++steps;
+  REQUIRE(first.count("surface_contacts") >= 2);
   second.engine.restore(first.engine.checkpoint());
   second.time = first.time;
   second.step(dt, 500);
+  whole.step(dt, steps + 500);
+  CHECK(second.energy("friction") > 0.0);
   CHECK(second.engine.state_hash() == whole.engine.state_hash());
 }

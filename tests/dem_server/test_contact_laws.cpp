@@ -12,18 +12,18 @@ namespace {
 constexpr double r = 0.5;
 
 /// Two equal grains along x that nearly touch.
-Scene pair(const GrainMaterial& material, double gap = 1e-9) {
-  Scene s;
-  s.grains({vec(0, 0, 0), vec(2 * r + gap, 0, 0)}, {r, r}, material);
-  return s;
-}
+struct TwoGrains : Scene {
+  explicit TwoGrains(const GrainMaterial& material, double gap = 1e-9) {
+    grains({vec(0, 0, 0), vec(2 * r + gap, 0, 0)}, {r, r}, material);
+  }
+};
 
 }  // namespace
 
 TEST_CASE("oblique impact with infinite friction: ratio of tangential contact velocities") {
   for (const auto& [kn, ks, expected] : {std::array{3.78, 1.13, -0.99742}, std::array{1.77, 0.35, -0.86380}}) {
     const GrainMaterial material{kn * 1e6, ks * 1e6, 2000.0, INFINITY, 0.0, 0.0};
-    Scene s = pair(material, 0.0);
+    TwoGrains s(material, 0.0);
     s.prepare(Geometry::updated);
     // slow: the contact plane must not turn during the impact
     const double vn = 1e-4, vt = 0.5e-4;
@@ -44,7 +44,7 @@ TEST_CASE("oblique impact with infinite friction: ratio of tangential contact ve
 
 TEST_CASE("gross sliding follows the impulse ratio") {
   const double mu = 0.1, vn = 1e-4, vt = 4e-4;
-  Scene s = pair(frictional_material(mu), 0.0);
+  TwoGrains s(frictional_material(mu), 0.0);
   s.prepare(Geometry::updated);
   s.set("velocity", {vec(vn, vt, 0), vec(-vn, -vt, 0)});
   const double dt = s.engine.stable_step() / 200;
@@ -65,7 +65,7 @@ TEST_CASE("a grain that slides on a floor rolls at 5/7 of its speed") {
   Scene s;
   s.engine.options.gravity = vec(0, 0, -g);
   GrainMaterial stiff = frictional_material(mu);
-  stiff.normal_stiffness = stiff.shear_stiffness = 1e9;
+  stiff.normal_stiffness = stiff.shear_stiffness = 1e10;
   s.grains({vec(0, 0, r)}, {r}, stiff);
   Wall floor;
   floor.normal = vec(0, 0, 1);
@@ -82,33 +82,36 @@ TEST_CASE("a grain that slides on a floor rolls at 5/7 of its speed") {
   s.step(dt, 3800);
   CHECK(s.velocity(0)[0] == Approx(u0 - mu * g * 3800 * dt).epsilon(1e-3));
   CHECK(s.velocity(0)[0] > 1.01 * 5.0 / 7.0 * u0);
-  s.step(dt, 4200);
-  CHECK(s.velocity(0)[0] == Approx(5.0 / 7.0 * u0).epsilon(1e-3));
-  CHECK(s.spin(0)[1] == Approx(5.0 / 7.0 * u0 / r).epsilon(2e-3));
+  s.step(dt, 400);
+  // the shear spring keeps swinging: means over many of its periods
+  const int steps = 30000;
+  const Vec x = s.engine.motion.displacement[0], angle = s.engine.rotation().angle[0];
+  s.step(dt, steps);
+  CHECK((s.engine.motion.displacement[0] - x)[0] / (steps * dt) == Approx(5.0 / 7.0 * u0).epsilon(1e-3));
+  CHECK((s.engine.rotation().angle[0] - angle)[1] / (steps * dt) == Approx(5.0 / 7.0 * u0 / r).epsilon(1e-3));
 }
 
 TEST_CASE("local damping gives the restitution sqrt((1 - a)/(1 + a))") {
-  // a grain on a bond to a fixed one, released: successive speeds at the rest length
-  Scene s = pair(frictional_material(0.0), 0.0);
+  TwoGrains s(frictional_material(0.0), 0.0);
   s.engine.boundary.add({"hold", {1}, 15, vec(0, 0, 0), {}}, 2);
   s.prepare(Geometry::updated);
   const double v = 1e-3, alpha = 0.7;
   s.set("velocity", {vec(v, 0, 0), vec(0, 0, 0)});
-  const double dt = s.engine.stable_step() / 2000;
+  const double dt = s.engine.stable_step() / 20000;
   int steps = 0;
-  while (s.velocity(0)[0] > -1e-12 || s.count("contacts") > 0) {
+  do {
     s.step(dt, 1, alpha);
-    REQUIRE(++steps < 100000);
-  }
-  CHECK(-s.velocity(0)[0] / v == Approx(0.4201).margin(1e-3));
-  CHECK(-s.velocity(0)[0] / v == Approx(std::sqrt((1 - alpha) / (1 + alpha))).epsilon(1e-3));
+    REQUIRE(++steps < 200000);
+  } while (steps < 10 || s.count("contacts") > 0);
+  CHECK(-s.velocity(0)[0] / v == Approx(std::sqrt((1 - alpha) / (1 + alpha))).margin(1e-4));
+  CHECK(-s.velocity(0)[0] / v == Approx(0.4201).margin(1e-4));
 }
 
 TEST_CASE("a bond breaks in tension at its strength, and its energy is booked") {
   GrainMaterial material = elastic_material();
   material.friction = 0.5;
   material.normal_strength = 4e3;  // times r^2: 1000 N
-  Scene s = pair(material, 0.01);
+  TwoGrains s(material, 0.01);
   CHECK(s.engine.make_bonds(0.05).bonds == 1);
   s.prepare(Geometry::updated);
   const double kn = 0.5 * material.normal_stiffness * r, mass = s.engine.motion.mass[0];
@@ -120,7 +123,7 @@ TEST_CASE("a bond breaks in tension at its strength, and its energy is booked") 
   CHECK(s.count("broken") == 0);
   CHECK(s.engine.ledger().balance() == Approx(0.25 * mass * 0.998 * 0.998 * critical * critical).epsilon(1e-4));
 
-  Scene t = pair(material, 0.01);
+  TwoGrains t(material, 0.01);
   t.engine.make_bonds(0.05);
   t.prepare(Geometry::updated);
   t.set("velocity", {vec(-0.6 * critical, 0, 0), vec(0.6 * critical, 0, 0)});
@@ -138,7 +141,7 @@ TEST_CASE("a bond breaks in shear, slides with friction after, and the balance s
   GrainMaterial material = elastic_material();
   material.friction = 0.2;
   material.shear_strength = 400.0;  // times r^2: 100 N
-  Scene s = pair(material, -0.02);  // overlapping, yet stress-free
+  TwoGrains s(material, -0.02);  // overlapping, yet stress-free
   s.engine.make_bonds(0.0);
   s.prepare(Geometry::updated);
   s.step(1e-9);
@@ -152,14 +155,14 @@ TEST_CASE("a bond breaks in shear, slides with friction after, and the balance s
   CHECK(s.count("contacts") == 1);  // compression remains, measured from the bond's length
   CHECK(s.energy("broken_bonds") > 0.0);
   CHECK(s.energy("friction") > 0.0);
-  CHECK(s.engine.ledger().balance() == Approx(before).epsilon(1e-6));
+  CHECK(s.engine.ledger().balance() == Approx(before).epsilon(1e-5));
 }
 
 TEST_CASE("breaking in shear under compression makes no jump in the normal force") {
   GrainMaterial material = elastic_material();
   material.friction = 0.0;
   material.shear_strength = 4.0;
-  Scene s = pair(material, -0.02);
+  TwoGrains s(material, -0.02);
   s.engine.make_bonds(0.0);
   s.prepare(Geometry::updated);
   s.set("velocity", {vec(0.1, 0.1, 0), vec(-0.1, -0.1, 0)});
@@ -179,7 +182,7 @@ TEST_CASE("breaking in shear under compression makes no jump in the normal force
 }
 
 TEST_CASE("momentum and angular momentum of a frictional collision are kept") {
-  Scene s = pair(frictional_material(0.4), 0.01);
+  TwoGrains s(frictional_material(0.4), 0.01);
   s.prepare(Geometry::updated);
   s.set("velocity", {vec(1.0, 0.3, 0.1), vec(-0.5, -0.4, 0.2)});
   s.set("spin", {vec(0.3, -0.2, 1.0), vec(0.1, 0.5, 0.2)});

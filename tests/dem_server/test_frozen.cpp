@@ -1,5 +1,6 @@
 // Frozen geometry: lattices, waves, energy over many steps.
 
+#include <Eigen/Eigenvalues>
 #include <numbers>
 
 #include "dem_server/stable_step.hpp"
@@ -106,8 +107,8 @@ TEST_CASE("a P wave crosses a face-centred column at sqrt(C11/rho)") {
       ++steps;
       if (now <= 0.0) {
         const double quarter = dt * (steps - 1 + at_start / (at_start - now));
-        // velocities start at n - 1/2: the wave is half a step ahead
-        CHECK((high / speed) / 4.0 == Approx(quarter + 0.0 * dt).epsilon(1e-3));
+        // at rest at n - 1/2: the wave turned half a step before the first one
+        CHECK(quarter + 0.5 * dt == Approx(high / speed / 4.0).epsilon(1e-3));
         break;
       }
       before = now;
@@ -151,7 +152,7 @@ TEST_CASE("energy with gravity, loads, dashpots, damping, constraints closes") {
   using gabion::engine::History;
   scene.engine.boundary.add({"base", bottom, 12, vec(0, 0, 1), History("half_sine", {0.01, 0.0, 0.05})}, 64);
   scene.engine.boundary.add({"push", top, VecField(16, vec(3, 0, -5)), History("ramp", {1.0, 0.0, 0.02})}, 64);
-  scene.engine.boundary.add({"absorb", top, VecField(16, vec(100, 200, 300))}, 64);
+  scene.engine.boundary.add(gabion::engine::Dashpot{"absorb", top, VecField(16, vec(100, 200, 300))}, 64);
   scene.prepare(Geometry::frozen);
   const double dt = 0.7 * scene.engine.stable_step();
   scene.step(dt);
@@ -213,6 +214,7 @@ TEST_CASE("the stable step against dense eigenvalues, and against the blow-up") 
       for (int k = 0; k < 50; ++k) {
         run.step(share * exact, 20);
         most = std::max(most, run.engine.motion.largest_speed());
+        if (most > 1e-2) break;  // started with 1e-9 m
       }
       return most / std::sqrt(start / run.engine.motion.mass[0]);
     };
@@ -225,15 +227,15 @@ TEST_CASE("one and two threads give the same bits") {
   for (const Geometry geometry : {Geometry::frozen, Geometry::updated}) {
     std::uint64_t hashes[2];
     for (const int threads : {1, 2}) {
-      const Spheres s = jittered(12);
+      const Spheres s = jittered(10);
       Scene scene;
-      scene.periodic_box(vec(-.5, -.5, -.5), vec(11.5, 11.5, 11.5));
+      scene.periodic_box(vec(-.5, -.5, -.5), vec(9.5, 9.5, 9.5));
       scene.engine.threads = threads;
       scene.grains(s.x, s.r, elastic_material());
       scene.engine.make_bonds(0.35);
       scene.prepare(geometry);
       scene.set("velocity", random_field(s.x.size(), 1.0, 3));
-      scene.step(0.8 * scene.engine.stable_step(), 50, 0.1);
+      scene.step(0.8 * scene.engine.stable_step(), 20, 0.1);
       hashes[threads - 1] = scene.engine.state_hash();
     }
     CHECK(hashes[0] == hashes[1]);

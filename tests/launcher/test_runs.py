@@ -16,20 +16,23 @@ class RunsTest(LauncherTest):
         page = (out / "report.html").read_text(encoding="utf-8")
         self.assertIn("data:image/png;base64,", page)
         self.assertIn("0.5 % of the contacts of the overlap slide &lt;&amp;&gt;", page)
-        self.assertIn("sizes grains", done.stdout)
+        self.assertIn("grains 1764, nodes 567", done.stdout)
         self.assertTrue((out / "plots" / "section.png").exists())
         self.assertTrue((out / "continuum_server.log").exists())
         self.assert_nothing_left()
 
-    def test_several_models_are_compared(self):
-        done = self.launch("run", self.scene, "--models", "dem,edge", "--out", "out", STAND_IN_COUPLER="full")
+    def test_several_models(self):
+        done = self.launch("run", self.scene, "--models", "dem,edge", "--out", "out", "--no-plots",
+                           STAND_IN_COUPLER="full")
         self.assertEqual(done.returncode, 0, done.stderr)
-        for model in ("dem", "edge"):
-            summary = json.loads((self.folder / "out" / model / "summary.json").read_text(encoding="utf-8"))
-            self.assertEqual(summary["model"], model)
-        self.assertFalse((self.folder / "out" / "dem" / "continuum_server.log").exists())
-        self.assertTrue((self.folder / "out" / "plots" / "probe-A.z.png").exists())
+        runs = [self.folder / "out" / model for model in ("dem", "edge")]
+        for folder in runs:
+            summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+            self.assertEqual(summary["model"], folder.name)
+        self.assertFalse((runs[0] / "continuum_server.log").exists(), "dem needs no continuum")
+        done = self.launch("plot", *runs)
         self.assertIn("compare.html", done.stdout)
+        self.assertTrue((self.folder / "out" / "plots" / "probe-A.z.png").exists())
 
     def test_check_starts_no_engine(self):
         done = self.launch("check", self.scene)

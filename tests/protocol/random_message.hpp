@@ -16,13 +16,13 @@ class RandomFields {
   M make() {
     sizes_.clear();
     M message;
-    message.visit([this](const char*, std::string_view shape, auto& field) { fill(field, shape); });
+    message.visit([this](const char*, std::string_view shape, auto& field) { this->fill(field, shape); });
     return message;
   }
 
  private:
   template <class T>
-    requires std::is_arithmetic_v<T>
+  requires std::is_arithmetic_v<T>
   void fill(T& value, std::string_view) {
     if constexpr (std::is_floating_point_v<T>)
       value = std::normal_distribution<>(0, 1e6)(random_);

@@ -1,10 +1,9 @@
-#include "protocol/wire/connection.hpp"
-
 #include <catch2/catch.hpp>
 #include <numeric>
 
 #include "allocations.hpp"
 #include "loopback.hpp"
+#include "protocol/wire/connection.hpp"
 #include "random_message.hpp"
 
 using namespace gabion::protocol;
@@ -44,7 +43,8 @@ TEST_CASE("a wait ends at its deadline, and says who, what and at which step") {
   CHECK(waited >= 0.15);
   CHECK(waited < 0.3);
   CHECK_THROWS_WITH(link.client->expect<Gap>(10ms),
-                    Catch::StartsWith("engine at 127.0.0.1:") && Catch::EndsWith(": did not answer within 0.01 s (waiting for GAP, step 42)"));
+                    Catch::StartsWith("engine at 127.0.0.1:") &&
+                        Catch::EndsWith(": did not answer within 0.01 s (waiting for GAP, step 42)"));
 }
 
 TEST_CASE("half a frame does not hold a wait open") {
@@ -216,7 +216,8 @@ TEST_CASE("rows of another step or another size are refused") {
   Loopback link;
   std::vector<double> rows(6);
   link.server->send_gap(rows, 4);
-  CHECK_THROWS_WITH(link.client->receive_gap(rows, 5, 1s), Catch::Contains("GAP of step 4 came where that of step 5 is due"));
+  CHECK_THROWS_WITH(link.client->receive_gap(rows, 5, 1s),
+                    Catch::Contains("GAP of step 4 came where that of step 5 is due"));
   link.server->send_gap(rows, 5);
   std::vector<double> fewer(3);
   CHECK_THROWS_AS(link.client->receive_gap(fewer, 5, 1s), BadMessage);

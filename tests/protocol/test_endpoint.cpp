@@ -16,9 +16,7 @@ TEST_CASE("a taken port is refused with the address and what to do") {
 
 TEST_CASE("connecting tries again until somebody listens") {
   std::uint16_t port;
-  {
-    port = Listener({"127.0.0.1", 0}).address().port;
-  }
+  { port = Listener({"127.0.0.1", 0}).address().port; }
   auto listening = std::async(std::launch::async, [&] {
     std::this_thread::sleep_for(100ms);
     Listener listener({"127.0.0.1", port});
@@ -32,9 +30,7 @@ TEST_CASE("connecting tries again until somebody listens") {
 
 TEST_CASE("connecting to nobody ends at the deadline and names the engine") {
   std::uint16_t port;
-  {
-    port = Listener({"127.0.0.1", 0}).address().port;
-  }
+  { port = Listener({"127.0.0.1", 0}).address().port; }
   const double waited = seconds_of([&] {
     CHECK_THROWS_WITH(Connection::connect("127.0.0.1", port, 200ms, "dem engine"),
                       Catch::StartsWith("dem engine at 127.0.0.1:" + std::to_string(port) + ": cannot be reached"));

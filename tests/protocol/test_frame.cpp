@@ -1,8 +1,8 @@
-#include "protocol/wire/frame.hpp"
-
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <vector>
+
+#include "protocol/wire/frame.hpp"
 
 using namespace gabion::protocol;
 
@@ -45,9 +45,9 @@ TEST_CASE("a frame says what was put into it") {
 TEST_CASE("the bytes of a frame are those of the worked example in PROTOCOL.md") {
   // BYE, frame number 7, step 0; the checksum was computed with Python's zlib.
   const HeaderBytes header = encode_header({.type = 6, .sequence = 7, .step = 0}, {});
-  const unsigned char expected[] = {0x47, 0x41, 0x42, 0x4e, 0x01, 0x00, 0x06, 0x00, 0, 0, 0, 0, 0, 0, 0, 0,
-                                    0x07, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-                                    0xbb, 0xd8, 0xe3, 0x63};
+  const unsigned char expected[] = {0x47, 0x41, 0x42, 0x4e, 0x01, 0x00, 0x06, 0x00, 0,    0,    0,    0,
+                                    0,    0,    0,    0,    0x07, 0,    0,    0,    0,    0,    0,    0,
+                                    0,    0,    0,    0,    0,    0,    0,    0,    0xbb, 0xd8, 0xe3, 0x63};
   CHECK(std::memcmp(header.data(), expected, sizeof expected) == 0);
 }
 

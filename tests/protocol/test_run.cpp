@@ -149,8 +149,9 @@ TEST_CASE("a coupler that freezes is found at the exchange deadline, with its na
   CHECK(waited >= 0.15);
   CHECK(waited < 0.4);
   CHECK(session.client().expect<Error>(1s).code == "timeout");
-  CHECK_THROWS_WITH(session.outcome.get(), Catch::StartsWith("coupler at 127.0.0.1:") &&
-                                               Catch::EndsWith("did not answer within 0.2 s (waiting for MULTIPLIERS, step 1)"));
+  CHECK_THROWS_WITH(session.outcome.get(),
+                    Catch::StartsWith("coupler at 127.0.0.1:") &&
+                        Catch::EndsWith("did not answer within 0.2 s (waiting for MULTIPLIERS, step 1)"));
 }
 
 TEST_CASE("a coupler that dies in a run is found at once") {

@@ -1,7 +1,6 @@
-#include "protocol/session/service.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "protocol/session/service.hpp"
 #include "session_fixture.hpp"
 
 using namespace gabion::protocol;
@@ -187,7 +186,7 @@ TEST_CASE("loads, constraints and probes act in a run") {
   CHECK(done.probe_steps.data == std::vector<double>{10, 12, 14});
   CHECK(done.probes.extents()[1] == 2);
   CHECK(done.probes[6 * 2 + 3 + 1] == Approx(4 * 0.1 * 3));  // moved, y, at step 14
-  CHECK(done.probes[6] > 0.0);                              // pushed, x, at step 12
+  CHECK(done.probes[6] > 0.0);                               // pushed, x, at step 12
   CHECK(done.reaction_names == std::vector<std::string>{"move"});
   CHECK(done.reactions.rows() == 1);
   CHECK(done.counters.data == std::vector<double>{8.0});

@@ -1,0 +1,96 @@
+"""Drives the engines' executables as another client would; see PROTOCOL.md.
+
+    GABION_BIN=build/bin python3 -m unittest test_conformance
+"""
+
+import math
+import unittest
+
+import models
+from engine_process import EngineTest
+from run_cases import RunCases
+from session_cases import SessionCases
+
+
+class DemServer(SessionCases, RunCases, EngineTest):
+    engine_name, role = "dem_server", "dem"
+
+    def set_up(self, client, measure=0):
+        bonded = models.set_up_chain(client, 3, measure)
+        self.assertEqual(bonded["bonds"], 2)
+
+    def test_messages_of_the_other_engine_are_refused(self):
+        client = self.greeted()
+        self.assertEqual(self.refusal(client.ask, "MESH").code, "value")
+
+    def test_two_bonded_grains_vibrate(self):
+        client = self.greeted()
+        self.assertEqual(models.set_up_chain(client, 2), {"bonds": 1, "contacts_per_grain": 1.0})
+        self.ready = client.ask("PREPARE")
+        for mass in self.ready["mass"].values:
+            self.assertAlmostEqual(mass / models.GRAIN_MASS, 1.0, 12)
+        # springs in three directions between two masses: omega^2 = 2 k/m, and the stable step is 2/omega
+        omega = math.sqrt(2 * models.BOND_STIFFNESS / models.GRAIN_MASS)
+        self.assertLessEqual(self.ready["stable_step"], 2.0 / omega * (1 + 1e-9))
+        self.dt = 0.05 * 2.0 / omega
+        client.ask("SET_FIELD", field="velocity", values=[[1e-3, 0, 0], [-1e-3, 0, 0]])
+        squares, period = self.vibration(client, 1, 0)
+        for square in squares:
+            self.assertAlmostEqual(square / omega**2, 1.0, 8)
+        half = math.asin(omega * self.dt / 2)
+        self.assertAlmostEqual(period / (math.pi * self.dt / half), 1.0, 4)
+
+
+class ContinuumServer(SessionCases, RunCases, EngineTest):
+    engine_name, role = "continuum_server", "continuum"
+
+    def set_up(self, client, measure=0):
+        models.set_up_brick(client, measure)
+
+    def test_messages_of_the_other_engine_are_refused(self):
+        client = self.greeted()
+        self.assertEqual(self.refusal(client.ask, "BONDS", gap=0.1).code, "value")
+
+    def test_a_brick_vibrates_along_its_length(self):
+        client = self.greeted()
+        self.set_up(client)
+        models.fix(client, "end", models.face(0, 0), 7)
+        models.fix(client, "sides", models.face(0, 1), 6)
+        self.ready = client.ask("PREPARE")
+        self.assertAlmostEqual(sum(self.ready["mass"].values) / models.BRICK_MASS, 1.0, 12)
+        # uniform strain: force = modulus area/length, mass = half the brick
+        omega = math.sqrt(2 * models.P_MODULUS / models.DENSITY) / models.SIDE[0]
+        self.dt = 0.05 * self.ready["stable_step"]
+        client.ask("SET_FIELD", field="velocity",
+                   values=[[1e-3 * corner[0], 0, 0] for corner in models.CORNERS])
+        squares, period = self.vibration(client, 1, 0)
+        for square in squares:
+            self.assertAlmostEqual(square / omega**2, 1.0, 8)
+        half = math.asin(omega * self.dt / 2)
+        self.assertAlmostEqual(period / (math.pi * self.dt / half), 1.0, 3)
+
+    def test_a_stretched_brick(self):
+        client = self.greeted()
+        self.set_up(client)
+        for axis, name in enumerate("xyz"):
+            models.fix(client, name, models.face(axis, 0), 1 << axis)
+        force = 1000.0  # N
+        client.ask("LOADS", name="pull", entities=models.face(0, 1), vectors=[[force / 4, 0, 0]] * 4,
+                   history_kind="constant", history=[1.0])
+        ready = client.ask("PREPARE")
+        done = client.run(4000, 0.6 * ready["stable_step"], damping=0.7)
+        self.assertLess(done["unbalanced"], 1e-9)
+        length, width, height = models.SIDE
+        strain = force / (width * height) / models.YOUNG
+        u = client.ask("FETCH", field="displacement")["values"].rows()
+        for corner, moved in zip(models.CORNERS, u):
+            for axis, expected in enumerate((strain * length, -models.POISSON * strain * width,
+                                             -models.POISSON * strain * height)):
+                self.assertAlmostEqual(moved[axis] / (strain * length), corner[axis] * expected / (strain * length), 8)
+        reactions = dict(zip(done["reaction_names"], done["reactions"].rows()))
+        self.assertAlmostEqual(reactions["x"][0] / force, -1.0, 8)
+        self.assertAlmostEqual(reactions["y"][1] / force, 0.0, 8)
+
+
+if __name__ == "__main__":
+    unittest.main()
