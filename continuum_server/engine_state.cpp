@@ -35,6 +35,7 @@ class Writer {
 
  private:
   void append(const void* data, std::size_t size) {
+    if (size == 0) return;
     const std::size_t at = blob.size();
     blob.resize(at + size);
     std::memcpy(blob.data() + at, data, size);
@@ -55,6 +56,7 @@ class Reader {
   void take(void* data, std::size_t size) {
     if (size > blob_.size())
       throw RequestError("RESTORE.blob", "the state ends too early", "take it from an engine set up the same way");
+    if (size == 0) return;
     std::memcpy(data, blob_.data(), size);
     blob_ = blob_.subspan(size);
   }

@@ -76,9 +76,11 @@ void time_steps(dem::DemEngine& engine, const char* name, int threads) {
   double contacts = 0.0;
   for (const engine::NamedCount& count : engine.counters())
     if (count.name == "contacts") contacts = 2.0 * count.value / static_cast<double>(engine.motion.size());
-  std::printf("%-28s %8zu grains %5.2f contacts/grain %d thread(s): %6.2f M particle-steps/s (%6.2f per processor s)  hash %016llx\n",
-              name, engine.motion.size(), contacts, threads, best_wall * 1e-6, best_processor * 1e-6,
-              static_cast<unsigned long long>(engine.state_hash()));
+  std::printf(
+      "%-28s %8zu grains %5.2f contacts/grain %d thread(s): %6.2f M particle-steps/s (%6.2f per processor s)  hash "
+      "%016llx\n",
+      name, engine.motion.size(), contacts, threads, best_wall * 1e-6, best_processor * 1e-6,
+      static_cast<unsigned long long>(engine.state_hash()));
 }
 
 }  // namespace

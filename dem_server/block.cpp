@@ -8,10 +8,8 @@ namespace gabion::dem {
 namespace {
 
 Quaternion product(const Quaternion& a, const Quaternion& b) {
-  return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-          a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-          a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-          a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+  return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+          a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
 }
 
 Quaternion quaternion_of(const Eigen::Matrix3d& axes) {
@@ -19,7 +17,9 @@ Quaternion quaternion_of(const Eigen::Matrix3d& axes) {
   return {q.w(), q.x(), q.y(), q.z()};
 }
 
-Vec to_body(const std::array<Vec, 3>& axes, Vec x) { return vec(dot(x, axes[0]), dot(x, axes[1]), dot(x, axes[2])); }
+Vec to_body(const std::array<Vec, 3>& axes, Vec x) {
+  return vec(dot(x, axes[0]), dot(x, axes[1]), dot(x, axes[2]));
+}
 Vec to_space(const std::array<Vec, 3>& axes, Vec x) {
   return splat(x[0]) * axes[0] + splat(x[1]) * axes[1] + splat(x[2]) * axes[2];
 }
@@ -120,8 +120,7 @@ void Block::find(const ContactSource& source, const VecField& displacement, doub
 }
 
 double Block::largest_travel() const {
-  return norm(now.displacement - now.displacement_at_find) +
-         radius_ * (now.angle_travelled[0] - now.angle_at_find[0]);
+  return norm(now.displacement - now.displacement_at_find) + radius_ * (now.angle_travelled[0] - now.angle_at_find[0]);
 }
 
 void Block::add_forces(const Grains& grains, const Domain& domain, double past_step, engine::Motion& motion,
@@ -130,7 +129,8 @@ void Block::add_forces(const Grains& grains, const Domain& domain, double past_s
   const auto axes = axes_of(now.attitude);
   for (SurfaceContact& c : contacts) {
     const double radius = grains.radius[c.grain];
-    const Vec from = domain.shift(motion.position[c.grain] - start_ + (motion.displacement[c.grain] - now.displacement));
+    const Vec from =
+        domain.shift(motion.position[c.grain] - start_ + (motion.displacement[c.grain] - now.displacement));
     const NearestPoint near = nearest_point(body_, to_body(axes, from));
     const double e = near.distance - radius;
     if (!(c.state & touching) && !(e < 0.0)) {
@@ -184,9 +184,15 @@ void Block::drift(const engine::StepContext& context) {
   now.angle_travelled[0] += norm(angle);
 }
 
-double Block::kinetic_energy() const { return 0.5 * mass_ * dot(old_velocity_, now.velocity); }
-double Block::rotational_energy() const { return 0.5 * dot(old_spin_, now.momentum); }
-double Block::gravity_energy(Vec gravity) const { return -mass_ * dot(gravity, now.displacement); }
+double Block::kinetic_energy() const {
+  return 0.5 * mass_ * dot(old_velocity_, now.velocity);
+}
+double Block::rotational_energy() const {
+  return 0.5 * dot(old_spin_, now.momentum);
+}
+double Block::gravity_energy(Vec gravity) const {
+  return -mass_ * dot(gravity, now.displacement);
+}
 
 std::vector<double> Block::momentum() const {
   const Vec linear = splat(mass_) * now.velocity;

@@ -26,11 +26,11 @@ Quaternion turned(const Quaternion& q, Vec angle);
 struct BlockSetup {
   std::vector<Vec> vertices;  ///< m, absolute
   std::vector<std::int32_t> face_ptr, face_vertices;
-  double mass = 0.0;          ///< kg
-  Vec velocity{};             ///< m/s
-  Vec spin{};                 ///< rad/s
-  bool rotation = true;       ///< free to rotate
-  double friction = 0.0;      ///< Coulomb coefficient against grains
+  double mass = 0.0;      ///< kg
+  Vec velocity{};         ///< m/s
+  Vec spin{};             ///< rad/s
+  bool rotation = true;   ///< free to rotate
+  double friction = 0.0;  ///< Coulomb coefficient against grains
 };
 
 class Block {
@@ -70,10 +70,10 @@ class Block {
 
   /// Numbers that a checkpoint has to keep, apart from contacts and sums.
   struct Motion {
-    Vec displacement{};     ///< of the centroid, m
-    Vec velocity{};         ///< m/s
-    Vec momentum{};         ///< angular, kg m2/s
-    Vec spin{};             ///< of the half step that momentum belongs to, rad/s
+    Vec displacement{};  ///< of the centroid, m
+    Vec velocity{};      ///< m/s
+    Vec momentum{};      ///< angular, kg m2/s
+    Vec spin{};          ///< of the half step that momentum belongs to, rad/s
     Quaternion attitude{1.0, 0.0, 0.0, 0.0};
     Vec angle_travelled{};  ///< x: sum of |omega| dt, rad
     Vec displacement_at_find{}, angle_at_find{};
@@ -86,10 +86,10 @@ class Block {
 
   Polyhedron body_;  ///< in its principal axes, about the centroid
   double mass_ = 0.0, radius_ = 0.0, friction_ = 0.0;
-  Vec inertia_{};    ///< principal, kg m2
-  Vec start_{};      ///< centroid at the start, m
+  Vec inertia_{};  ///< principal, kg m2
+  Vec start_{};    ///< centroid at the start, m
   bool rotates_ = true;
-  Vec force_{}, torque_{};            ///< of the contacts, N, N m
+  Vec force_{}, torque_{};  ///< of the contacts, N, N m
   Vec old_velocity_{}, old_spin_{};
   Vec damping_force_{}, damping_torque_{};
 };

@@ -43,12 +43,11 @@ void ContactForces::add(std::size_t first, std::size_t last, double past_step, c
   if (first >= last) return;
   const bool scattering = threads <= 1;
   const Loop loop = choose(law, rotating, scattering);
-  const LoopArrays arrays{table.start.data(),       table.second.data(),        table.branch.data(),
-                          table.spring.data(),      table.stiffness.data(),     table.strength.data(),
-                          table.state.data(),       motion.displacement.data(), motion.velocity.data(),
-                          rotation.spin.data(),     motion.force.data(),        rotation.torque.data(),
-                          buffer_.force.data(),     buffer_.moment.data(),      grains.radius.data(),
-                          past_step};
+  const LoopArrays arrays{
+      table.start.data(),     table.second.data(),   table.branch.data(),  table.spring.data(),
+      table.stiffness.data(), table.strength.data(), table.state.data(),   motion.displacement.data(),
+      motion.velocity.data(), rotation.spin.data(),  motion.force.data(),  rotation.torque.data(),
+      buffer_.force.data(),   buffer_.moment.data(), grains.radius.data(), past_step};
   const std::size_t blocks = (last - first + block - 1) / block;
   sums_.assign(blocks, ContactSums{});
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)

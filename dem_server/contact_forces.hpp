@@ -32,9 +32,9 @@ class ContactForces {
   bool rotating = true;
   int threads = 1;
   ContactLosses losses;
-  std::uint64_t breaks = 0;                  ///< bonds broken since the start
-  std::vector<std::int32_t> broken_of;       ///< broken bonds per grain
-  std::vector<std::int32_t> broken_as_first; ///< the same, counted at the pair's first grain only
+  std::uint64_t breaks = 0;                   ///< bonds broken since the start
+  std::vector<std::int32_t> broken_of;        ///< broken bonds per grain
+  std::vector<std::int32_t> broken_as_first;  ///< the same, counted at the pair's first grain only
 
   /// Call when the table was replaced.
   void table_changed(std::size_t grains);

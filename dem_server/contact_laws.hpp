@@ -75,9 +75,7 @@ struct BreakableBond {
 /// No bonds at all.
 struct Friction {
   static constexpr bool breakable = false;
-  static Response respond(const ContactSpring& k, const BondStrength&, const Trial& trial) {
-    return coulomb(k, trial);
-  }
+  static Response respond(const ContactSpring& k, const BondStrength&, const Trial& trial) { return coulomb(k, trial); }
 };
 
 }  // namespace gabion::dem

@@ -51,7 +51,8 @@ inline void forget_bond_length(const LoopArrays& a, std::size_t i, std::size_t c
 }
 
 template <class Law, bool rotating>
-inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, ContactAction& action, ContactSums& sums) {
+inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, ContactAction& action,
+                           ContactSums& sums) {
   const auto j = static_cast<std::size_t>(a.second[c]);
   const std::uint8_t was = a.state[c];
   const Vec stored_branch = a.branch[c], stored_spring = a.spring[c];

@@ -85,8 +85,7 @@ ContactTable first_table(const ContactSource& source, const std::vector<Pair>& b
   return table;
 }
 
-ContactTable renewed_table(const ContactSource& source, const ContactTable& old,
-                           const std::vector<Pair>& candidates) {
+ContactTable renewed_table(const ContactSource& source, const ContactTable& old, const std::vector<Pair>& candidates) {
   ContactTable table;
   reserve(table, source, std::max(old.size(), candidates.size()));
   auto candidate = candidates.begin();

@@ -13,14 +13,14 @@
 namespace gabion::dem {
 
 struct ContactTable {
-  std::vector<std::int32_t> start{0};      ///< pairs of grain i as the first one: [start[i], start[i+1])
-  std::vector<std::int32_t> second;        ///< j, at least i
+  std::vector<std::int32_t> start{0};             ///< pairs of grain i as the first one: [start[i], start[i+1])
+  std::vector<std::int32_t> second;               ///< j, at least i
   std::vector<std::array<std::int8_t, 3>> image;  ///< of j, in periods
-  VecField branch;                         ///< X_j + image - X_i, m; fourth: rest length, m
-  VecField spring;                         ///< shear elongation, m; fourth: |branch|^2 - rest^2, m2
-  std::vector<ContactSpring> stiffness;    ///< weight included
-  std::vector<BondStrength> strength;      ///< weight included; empty when no bond can break
-  std::vector<std::uint8_t> state;         ///< ContactState bits
+  VecField branch;                                ///< X_j + image - X_i, m; fourth: rest length, m
+  VecField spring;                                ///< shear elongation, m; fourth: |branch|^2 - rest^2, m2
+  std::vector<ContactSpring> stiffness;           ///< weight included
+  std::vector<BondStrength> strength;             ///< weight included; empty when no bond can break
+  std::vector<std::uint8_t> state;                ///< ContactState bits
 
   std::size_t size() const { return second.size(); }
   std::size_t grains() const { return start.size() - 1; }
@@ -35,7 +35,9 @@ struct ContactTable {
 };
 
 /// The fourth of spring for a pair that touches at the rest length.
-inline double square_difference(double length, double rest) { return (length - rest) * (length + rest); }
+inline double square_difference(double length, double rest) {
+  return (length - rest) * (length + rest);
+}
 
 /// What a table is made from.
 struct ContactSource {

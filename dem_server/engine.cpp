@@ -44,7 +44,9 @@ bool DemEngine::step(const StepContext& context, engine::Exchange& exchange) {
   return go_on;
 }
 
-std::size_t DemEngine::interface_limit() const { return std::max(tie.reach(), sponge_.reach()); }
+std::size_t DemEngine::interface_limit() const {
+  return std::max(tie.reach(), sponge_.reach());
+}
 
 void DemEngine::begin_step(const StepContext& context) {
   if (context.dt != step_size_) motion.set_step(step_size_ = context.dt);

@@ -127,8 +127,8 @@ class DemEngine : public engine::Engine {
   std::vector<Pair> bonds_;
   double skin_ = 0.0;  ///< m
   bool built_ = false;
-  Domain built_domain_;                 ///< of the contacts
-  engine::Options built_options_;       ///< for which the contacts were built
+  Domain built_domain_;            ///< of the contacts
+  engine::Options built_options_;  ///< for which the contacts were built
   engine::WeightField built_weights_;
 
   Rotation rotation_;
@@ -140,10 +140,10 @@ class DemEngine : public engine::Engine {
 
   VecField displacement_at_build_;
   std::uint64_t held_groups_ = 0;  ///< constraint groups for which rotations were held
-  double step_size_ = 0.0;  ///< for which the mobilities were made, s
-  double past_step_ = 0.0;  ///< dt of the drift that led to the present state; 0: none
+  double step_size_ = 0.0;         ///< for which the mobilities were made, s
+  double past_step_ = 0.0;         ///< dt of the drift that led to the present state; 0: none
   std::uint64_t steps_ = 0, rebuilds_ = 0, fast_ = 0;
-  std::vector<std::int32_t> lost_;  ///< grains that left the domain, ascending
+  std::vector<std::int32_t> lost_;        ///< grains that left the domain, ascending
   double elastic_ = 0.0, gravity_ = 0.0;  ///< at t_n of the last measured step, J
   engine::Ledger ledger_;
 };

@@ -33,7 +33,7 @@ std::vector<double> table(std::vector<double> values, std::uint64_t width, Shape
 }  // namespace
 
 std::vector<std::string> DemEngine::field_names() {
-  return {"position", "displacement", "velocity", "rotation", "spin",      "force", "radius", "mass",
+  return {"position", "displacement", "velocity", "rotation", "spin",      "force", "radius",    "mass",
           "weight",   "contact",      "broken",   "lost",     "tie_force", "block", "wall_force"};
 }
 
@@ -56,7 +56,10 @@ std::optional<std::vector<double>> DemEngine::field(const std::string& name, Sha
          return column(std::move(w), shape);
        }},
       {"contact", [&] { return table(contact_rows(), 8, shape); }},
-      {"broken", [&] { return column({contact_.broken_of.begin(), contact_.broken_of.end()}, shape); }},
+      {"broken",
+       [&] {
+         return column({contact_.broken_of.begin(), contact_.broken_of.end()}, shape);
+       }},
       {"lost",
        [&] {
          std::vector<double> flags(grains_.size(), 0.0);
@@ -86,9 +89,9 @@ void DemEngine::set_field(const std::string& name, std::span<const double> value
     throw engine::RequestError("SET_FIELD field", "no field '" + name + "' to set",
                                "known: displacement, velocity, rotation, spin");
   if (values.size() != 3 * grains_.size())
-    throw engine::RequestError("SET_FIELD values", std::to_string(values.size()) + " values for " +
-                                                       std::to_string(grains_.size()) + " grains",
-                               "send three per grain");
+    throw engine::RequestError(
+        "SET_FIELD values", std::to_string(values.size()) + " values for " + std::to_string(grains_.size()) + " grains",
+        "send three per grain");
   for (std::size_t k = 0; k < values.size(); ++k)
     if (!std::isfinite(values[k]))
       throw engine::RequestError("SET_FIELD values", "value of grain " + std::to_string(k / 3) + " is not finite",

@@ -23,8 +23,8 @@ struct GrainMaterial {
 };
 
 struct Grains {
-  std::vector<double> radius;           ///< m
-  std::vector<std::int32_t> material;   ///< index into materials
+  std::vector<double> radius;          ///< m
+  std::vector<std::int32_t> material;  ///< index into materials
   std::vector<GrainMaterial> materials;
 
   std::size_t size() const { return radius.size(); }
@@ -54,7 +54,9 @@ struct BondStrength {
   double shear = 0.0;    ///< N
 };
 
-inline double in_series(double a, double b) { return a + b > 0.0 ? a * b / (a + b) : 0.0; }
+inline double in_series(double a, double b) {
+  return a + b > 0.0 ? a * b / (a + b) : 0.0;
+}
 
 /// k = w k_i k_j/(k_i + k_j) with k_i = coefficient r_i; the smaller friction.
 inline ContactSpring contact_spring(const Grains& grains, std::size_t i, std::size_t j, double weight) {

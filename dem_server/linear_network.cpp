@@ -65,8 +65,7 @@ void keep(std::size_t first, std::size_t last, const std::vector<std::int32_t>& 
     for (std::int32_t k = start[i]; k < start[i + 1]; ++k) {
       const auto j = static_cast<std::size_t>(second[k]);
       const LinearContact& c = contacts[k];
-      const Pull p =
-          pull<rotating>(c, u[j] - u[i], rotating ? angle[i] : Vec{}, rotating ? angle[j] : Vec{});
+      const Pull p = pull<rotating>(c, u[j] - u[i], rotating ? angle[i] : Vec{}, rotating ? angle[j] : Vec{});
       Vec force = p.force;
       force[3] = c.arm_i;
       buffer.force[k] = force;
@@ -106,21 +105,20 @@ void LinearNetwork::build(const ContactTable& table, const VecField& u, double n
       const ContactSpring& k = table.stiffness[c];
       Vec normal = reach.branch / splat(reach.distance);
       normal[3] = k.shear;
-      contacts_.push_back({normal, 0.5 * reach.distance + k.half_difference,
-                           0.5 * reach.distance - k.half_difference, k.normal - k.shear});
+      contacts_.push_back({normal, 0.5 * reach.distance + k.half_difference, 0.5 * reach.distance - k.half_difference,
+                           k.normal - k.shear});
       second_.push_back(j);
     }
     start_.push_back(static_cast<std::int32_t>(second_.size()));
   }
 }
 
-void LinearNetwork::add_forces(std::size_t first, std::size_t last, const VecField& displacement,
-                               const VecField& angle, VecField& force, VecField& torque, bool rotating,
-                               int threads) {
+void LinearNetwork::add_forces(std::size_t first, std::size_t last, const VecField& displacement, const VecField& angle,
+                               VecField& force, VecField& torque, bool rotating, int threads) {
   if (threads <= 1) {
     const auto run = rotating ? scatter<true> : scatter<false>;
-    run(first, last, start_.data(), second_.data(), contacts_.data(), displacement.data(), angle.data(),
-        force.data(), torque.data());
+    run(first, last, start_.data(), second_.data(), contacts_.data(), displacement.data(), angle.data(), force.data(),
+        torque.data());
   } else {
     if (!connected_) {
       buffer_.connect(start_, second_);
@@ -149,8 +147,7 @@ double LinearNetwork::energy(const VecField& displacement, const VecField& angle
       const std::int32_t j = second_[c];
       Vec delta = displacement[j] - displacement[i];
       const Vec n = without_fourth(contacts_[c].normal);
-      if (rotating)
-        delta -= cross(splat(contacts_[c].arm_i) * angle[i] + splat(contacts_[c].arm_j) * angle[j], n);
+      if (rotating) delta -= cross(splat(contacts_[c].arm_i) * angle[i] + splat(contacts_[c].arm_j) * angle[j], n);
       const double along = dot(delta, n);
       twice += contacts_[c].normal[3] * dot(delta, delta) + contacts_[c].excess * along * along;
     }

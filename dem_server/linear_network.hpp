@@ -12,7 +12,7 @@ namespace gabion::dem {
 
 /// A spring between two grains, or (j == none) between a grain and something that does not move.
 struct LinearContact {
-  Vec normal;  ///< from i to j; fourth: k_s, N/m
+  Vec normal;           ///< from i to j; fourth: k_s, N/m
   double arm_i, arm_j;  ///< m
   double excess;        ///< k_n - k_s, N/m
   double spare = 0.0;
@@ -22,7 +22,7 @@ struct LinearContact {
 struct SurfaceSpring {
   std::int32_t grain;
   Vec normal;
-  double arm;            ///< m
+  double arm;                                ///< m
   double normal_stiffness, shear_stiffness;  ///< N/m
 };
 

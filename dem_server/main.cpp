@@ -11,7 +11,9 @@ namespace {
 using namespace gabion;
 using dem::Vec;
 
-Vec to_vec(std::span<const double> v) { return engine::vec(v[0], v[1], v[2]); }
+Vec to_vec(std::span<const double> v) {
+  return engine::vec(v[0], v[1], v[2]);
+}
 
 engine::VecField to_field(const protocol::Array<double>& rows) {
   engine::VecField field(rows.rows());
@@ -30,8 +32,8 @@ std::vector<double> flat(const engine::VecField& field) {
 std::vector<dem::GrainMaterial> to_materials(const protocol::GrainMaterials& m) {
   std::vector<dem::GrainMaterial> materials;
   for (std::size_t k = 0; k < m.density.size(); ++k)
-    materials.push_back({m.normal_stiffness[k], m.shear_stiffness[k], m.density[k], m.friction[k],
-                         m.normal_strength[k], m.shear_strength[k]});
+    materials.push_back({m.normal_stiffness[k], m.shear_stiffness[k], m.density[k], m.friction[k], m.normal_strength[k],
+                         m.shear_strength[k]});
   return materials;
 }
 
@@ -180,4 +182,6 @@ void serve(protocol::Server& server) {
 
 }  // namespace
 
-int main(int argc, char** argv) { return protocol::serve_main(argc, argv, "dem_server", serve); }
+int main(int argc, char** argv) {
+  return protocol::serve_main(argc, argv, "dem_server", serve);
+}

@@ -27,16 +27,15 @@ void DemEngine::close_ledger() {
   if (!motion.measured) return;
   const double moving = block_.present() ? block_.kinetic_energy() : 0.0;
   const double turning = block_.present() ? block_.rotational_energy() : 0.0;
-  const double damped = motion.damping_work.until_now() + rotation_.damping_work.until_now() +
-                        block_.damping_work.until_now();
+  const double damped =
+      motion.damping_work.until_now() + rotation_.damping_work.until_now() + block_.damping_work.until_now();
   ledger_ = {};
   ledger_.add("kinetic", Ledger::Kind::stored, motion.kinetic_energy() + moving);
   ledger_.add("rotational", Ledger::Kind::stored,
               (contact_options_.rotations ? rotation_.kinetic_energy() : 0.0) + turning);
   ledger_.add("elastic", Ledger::Kind::stored, elastic_);
   ledger_.add("gravity", Ledger::Kind::stored, gravity_);
-  ledger_.add("friction", Ledger::Kind::lost,
-              contact_.losses.friction + walls_.friction_work + block_.friction_work);
+  ledger_.add("friction", Ledger::Kind::lost, contact_.losses.friction + walls_.friction_work + block_.friction_work);
   ledger_.add("broken_bonds", Ledger::Kind::lost, contact_.losses.broken);
   ledger_.add("damping", Ledger::Kind::lost, -damped);
   ledger_.add("dashpots", Ledger::Kind::lost, -motion.dashpot_work.until_now());

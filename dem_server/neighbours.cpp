@@ -90,7 +90,9 @@ class Grid {
   std::int64_t extent_[3] = {1, 1, 1};
 };
 
-std::string name_of(std::size_t grain) { return "grain " + std::to_string(grain); }
+std::string name_of(std::size_t grain) {
+  return "grain " + std::to_string(grain);
+}
 
 /// Centres brought into the box, and by how many periods.
 struct Wrapped {
@@ -103,8 +105,7 @@ Wrapped wrap(std::span<const Vec> centres, const Domain& domain) {
   Wrapped wrapped{{centres.begin(), centres.end()}, std::vector<Image>(centres.size())};
   for (std::size_t i = 0; i < centres.size(); ++i)
     for (int axis = 0; axis < 3; ++axis) {
-      if (!std::isfinite(centres[i][axis]))
-        throw std::invalid_argument(name_of(i) + ": its position is not finite");
+      if (!std::isfinite(centres[i][axis])) throw std::invalid_argument(name_of(i) + ": its position is not finite");
       if (!domain.periodic[axis]) continue;
       const double periods = std::floor((centres[i][axis] - domain.lo[axis]) / domain.period(axis));
       if (std::fabs(periods) > most_periods)
@@ -166,8 +167,10 @@ void sort_pairs(std::vector<Pair>& pairs, std::size_t grains) {
 
 Pair ordered(std::int32_t a, std::int32_t b, const Image& image) {
   if (a <= b) return {a, b, image};
-  return {b, a, {static_cast<std::int8_t>(-image[0]), static_cast<std::int8_t>(-image[1]),
-                 static_cast<std::int8_t>(-image[2])}};
+  return {
+      b,
+      a,
+      {static_cast<std::int8_t>(-image[0]), static_cast<std::int8_t>(-image[1]), static_cast<std::int8_t>(-image[2])}};
 }
 
 void check(std::span<const Vec> centres, std::span<const double> radii, double margin, const Domain& domain) {
@@ -210,8 +213,8 @@ std::vector<Pair> find_pairs(std::span<const Vec> centres, std::span<const doubl
         if (dot(d, d) > reach * reach) return;
         Image image;
         for (int axis = 0; axis < 3; ++axis)
-          image[axis] = static_cast<std::int8_t>(b.image[axis] + wrapped.periods[i][axis] -
-                                                 wrapped.periods[b.grain][axis]);
+          image[axis] =
+              static_cast<std::int8_t>(b.image[axis] + wrapped.periods[i][axis] - wrapped.periods[b.grain][axis]);
         pairs.push_back(ordered(a, b.grain, image));
       });
     }

@@ -81,7 +81,8 @@ Polyhedron::Polyhedron(std::vector<Vec> corners, const std::vector<std::int32_t>
       static_cast<std::size_t>(face_ptr.back()) != face_vertices.size())
     throw std::invalid_argument("a body needs at least four corners and four faces, and face_ptr must fit");
   for (std::size_t f = 0; f + 1 < face_ptr.size(); ++f) {
-    if (face_ptr[f + 1] < face_ptr[f] + 3) throw std::invalid_argument("face " + std::to_string(f) + " has fewer than three corners");
+    if (face_ptr[f + 1] < face_ptr[f] + 3)
+      throw std::invalid_argument("face " + std::to_string(f) + " has fewer than three corners");
     faces.emplace_back(face_vertices.begin() + face_ptr[f], face_vertices.begin() + face_ptr[f + 1]);
     for (const int v : faces.back())
       if (v < 0 || static_cast<std::size_t>(v) >= vertices.size())

@@ -9,12 +9,12 @@
 namespace gabion::dem {
 
 struct Polyhedron {
-  std::vector<Vec> vertices;                ///< m
-  std::vector<std::vector<int>> faces;      ///< corners anticlockwise seen from outside
-  std::vector<Vec> normals;                 ///< outward, unit
-  double volume = 0.0;                      ///< m3
-  Vec centroid{};                           ///< m
-  double inertia[3][3] = {};                ///< about the centroid for unit mass, m2
+  std::vector<Vec> vertices;            ///< m
+  std::vector<std::vector<int>> faces;  ///< corners anticlockwise seen from outside
+  std::vector<Vec> normals;             ///< outward, unit
+  double volume = 0.0;                  ///< m3
+  Vec centroid{};                       ///< m
+  double inertia[3][3] = {};            ///< about the centroid for unit mass, m2
 
   /// Throws std::invalid_argument when it is not closed, not convex, turned inside out or flat.
   Polyhedron(std::vector<Vec> vertices, const std::vector<std::int32_t>& face_ptr,

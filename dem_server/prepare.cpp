@@ -22,7 +22,9 @@ constexpr double largest_overlap = 0.1;
 /// Pairs with a gap below this share of the mean radius count as touching when the stable step is found.
 constexpr double near_gap = 0.025;
 
-std::string grain_name(std::size_t i) { return "grain " + std::to_string(i); }
+std::string grain_name(std::size_t i) {
+  return "grain " + std::to_string(i);
+}
 
 /// find_pairs, with its complaints turned into the engine's.
 std::vector<Pair> pairs_of(const VecField& x, const std::vector<double>& radii, double margin, const Domain& domain) {
@@ -40,15 +42,17 @@ void flush_denormals(int threads) {
   _mm_setcsr(_mm_getcsr() | flush_to_zero | denormals_are_zero);
 }
 
-bool same(const Vec a, const Vec b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
+bool same(const Vec a, const Vec b) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
 
 }  // namespace
 
 void DemEngine::set_grains(VecField position, std::vector<double> radius, std::vector<std::int32_t> material) {
   if (position.size() != radius.size() || position.size() != material.size())
-    throw RequestError("GRAINS", "position, radius and material have different lengths: " +
-                                     std::to_string(position.size()) + ", " + std::to_string(radius.size()) + ", " +
-                                     std::to_string(material.size()),
+    throw RequestError("GRAINS",
+                       "position, radius and material have different lengths: " + std::to_string(position.size()) +
+                           ", " + std::to_string(radius.size()) + ", " + std::to_string(material.size()),
                        "send one of each per grain");
   for (std::size_t i = 0; i < radius.size(); ++i) {
     if (!(radius[i] > 0.0) || !std::isfinite(radius[i]))
@@ -118,8 +122,9 @@ void DemEngine::set_walls(std::vector<Wall> walls) {
   for (std::size_t w = 0; w < walls.size(); ++w) {
     const double length = norm(walls[w].normal);
     if (!(std::fabs(length - 1.0) < 1e-6) || !(walls[w].friction >= 0.0))
-      throw RequestError("WALLS", "wall " + std::to_string(w) + " has a normal of length " + std::to_string(length) +
-                                      " and friction " + std::to_string(walls[w].friction),
+      throw RequestError("WALLS",
+                         "wall " + std::to_string(w) + " has a normal of length " + std::to_string(length) +
+                             " and friction " + std::to_string(walls[w].friction),
                          "normals must have length 1, friction must be at least 0");
     walls[w].normal /= splat(length);
   }
@@ -155,21 +160,24 @@ void DemEngine::check_setup() const {
   if (grains_.size() == 0) throw RequestError("PREPARE", "there are no grains", "send GRAINS first");
   for (std::size_t i = 0; i < grains_.size(); ++i)
     if (grains_.material[i] < 0 || static_cast<std::size_t>(grains_.material[i]) >= grains_.materials.size())
-      throw RequestError("GRAINS material", grain_name(i) + " has material " + std::to_string(grains_.material[i]) +
-                                                ", but there are " + std::to_string(grains_.materials.size()),
+      throw RequestError("GRAINS material",
+                         grain_name(i) + " has material " + std::to_string(grains_.material[i]) + ", but there are " +
+                             std::to_string(grains_.materials.size()),
                          "send GRAIN_MATERIALS with every material that grains use");
   if (contact_options_.geometry == Geometry::updated) return;
   const char* advice = "use geometry 'updated', or bonds of infinite strength";
-  if (bonds_.empty()) throw RequestError("CONTACT_OPTIONS geometry", "frozen geometry needs bonds, there are none", advice);
+  if (bonds_.empty())
+    throw RequestError("CONTACT_OPTIONS geometry", "frozen geometry needs bonds, there are none", advice);
   if (!walls_.empty() || block_.present())
     throw RequestError("CONTACT_OPTIONS geometry", "frozen geometry knows neither walls nor the block", advice);
   for (const Pair& p : bonds_)
     for (const std::int32_t g : {p.i, p.j}) {
       const GrainMaterial& m = grains_.material_of(g);
       if (!std::isinf(m.normal_strength) || !std::isinf(m.shear_strength))
-        throw RequestError("CONTACT_OPTIONS geometry", "frozen geometry needs bonds that cannot break, but " +
-                                                           grain_name(g) + " has bonds of finite strength",
-                           advice);
+        throw RequestError(
+            "CONTACT_OPTIONS geometry",
+            "frozen geometry needs bonds that cannot break, but " + grain_name(g) + " has bonds of finite strength",
+            advice);
     }
 }
 
@@ -191,11 +199,11 @@ VecField DemEngine::present_positions() const {
 }
 
 bool DemEngine::needs_building() const {
-  bool as_built = built_ && same(options.box_lo, built_options_.box_lo) && same(options.box_hi, built_options_.box_hi) &&
-                  same(weights.outer_lo, built_weights_.outer_lo) && same(weights.outer_hi, built_weights_.outer_hi) &&
-                  weights.width == built_weights_.width && weights.floor == built_weights_.floor;
-  for (int axis = 0; axis < 3; ++axis)
-    as_built = as_built && options.periodic[axis] == built_options_.periodic[axis];
+  bool as_built = built_ && same(options.box_lo, built_options_.box_lo) &&
+                  same(options.box_hi, built_options_.box_hi) && same(weights.outer_lo, built_weights_.outer_lo) &&
+                  same(weights.outer_hi, built_weights_.outer_hi) && weights.width == built_weights_.width &&
+                  weights.floor == built_weights_.floor;
+  for (int axis = 0; axis < 3; ++axis) as_built = as_built && options.periodic[axis] == built_options_.periodic[axis];
   return !as_built;
 }
 
@@ -207,13 +215,16 @@ void DemEngine::build_contacts() {
   contact_ = ContactForces{};
   contact_.law = choose_law();
   contact_.rotating = contact_options_.rotations;
-  const auto candidates = frozen ? std::vector<Pair>{} : pairs_of(present_positions(), grains_.radius, skin_, built_domain_);
+  const auto candidates =
+      frozen ? std::vector<Pair>{} : pairs_of(present_positions(), grains_.radius, skin_, built_domain_);
   contact_.table = first_table(source(), bonds_, candidates);
   contact_.threads = threads;
   contact_.table_changed(grains_.size());
   refuse_overlaps();
-  if (frozen) frozen_.build(contact_.table, VecField(grains_.size(), Vec{}), 0.0);
-  else contact_.springs_from_displacements(motion.displacement, rotation_.angle);
+  if (frozen)
+    frozen_.build(contact_.table, VecField(grains_.size(), Vec{}), 0.0);
+  else
+    contact_.springs_from_displacements(motion.displacement, rotation_.angle);
   displacement_at_build_ = motion.displacement;
   set_masses();
   built_ = true;
@@ -232,10 +243,10 @@ void DemEngine::refuse_overlaps() const {
     const double overlap = -reach_of(contact_.table, c, du).elongation;
     const double smaller = std::min(grains_.radius[i], grains_.radius[j]);
     if (overlap > largest_overlap * smaller)
-      throw RequestError("GRAINS position", "grains " + std::to_string(i) + " and " + std::to_string(j) +
-                                                " overlap by " + std::to_string(overlap) + " m, radii " +
-                                                std::to_string(grains_.radius[i]) + " and " +
-                                                std::to_string(grains_.radius[j]),
+      throw RequestError("GRAINS position",
+                         "grains " + std::to_string(i) + " and " + std::to_string(j) + " overlap by " +
+                             std::to_string(overlap) + " m, radii " + std::to_string(grains_.radius[i]) + " and " +
+                             std::to_string(grains_.radius[j]),
                          "relax the packing, or bond it so that it is stress-free as it stands");
   });
 }

@@ -9,7 +9,9 @@ Vec sign(Vec a) {
   return (a > zero ? one : zero) - (a < zero ? one : zero);
 }
 
-Vec magnitude(Vec a) { return a > Vec{} ? a : -a; }
+Vec magnitude(Vec a) {
+  return a > Vec{} ? a : -a;
+}
 
 }  // namespace
 

@@ -7,8 +7,8 @@
 //   T      torque of the contacts at t_n [N m]
 //   alpha  local damping coefficient
 
-#include "protocol/engine/motion.hpp"
 #include "dem_server/neighbours.hpp"
+#include "protocol/engine/motion.hpp"
 
 namespace gabion::dem {
 

@@ -8,8 +8,8 @@
 namespace gabion::dem {
 
 struct Spectrum {
-  double highest = 0.0;  ///< largest eigenvalue of M^-1 K with the residual's bound, (rad/s)^2
-  double residual = 0.0; ///< that bound over the eigenvalue
+  double highest = 0.0;   ///< largest eigenvalue of M^-1 K with the residual's bound, (rad/s)^2
+  double residual = 0.0;  ///< that bound over the eigenvalue
   int iterations = 0;
 };
 

@@ -74,9 +74,9 @@ void DemEngine::restore(std::span<const std::uint8_t> blob) {
   StateReader reader(blob);
   reader(header);
   if (std::memcmp(&header, &own, sizeof header) != 0)
-    throw engine::RequestError("RESTORE blob", "the state is of another engine or set-up: " +
-                                                   std::to_string(header.grains) + " grains here against " +
-                                                   std::to_string(own.grains),
+    throw engine::RequestError("RESTORE blob",
+                               "the state is of another engine or set-up: " + std::to_string(header.grains) +
+                                   " grains here against " + std::to_string(own.grains),
                                advice);
   try {
     EngineState::visit(reader, *this);

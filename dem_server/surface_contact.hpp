@@ -16,11 +16,11 @@ namespace gabion::dem {
 struct SurfaceContact {
   std::int32_t surface = 0;  ///< wall index; 0 for the block
   std::int32_t grain = 0;
-  ContactSpring stiffness;   ///< weight included
-  Vec spring{};              ///< m
-  Vec normal{};              ///< from grain to surface in the last step
-  Vec force{};               ///< on the grain in the last step, N
-  double elongation = 0.0;   ///< in the last step, m
+  ContactSpring stiffness;  ///< weight included
+  Vec spring{};             ///< m
+  Vec normal{};             ///< from grain to surface in the last step
+  Vec force{};              ///< on the grain in the last step, N
+  double elongation = 0.0;  ///< in the last step, m
   std::uint8_t state = open;
 
   double energy() const {
@@ -37,7 +37,9 @@ struct Meeting {
   double twist;       ///< mean spin about the normal, rad/s
 };
 
-inline double contact_arm(double radius, double elongation) { return radius + 0.5 * elongation; }
+inline double contact_arm(double radius, double elongation) {
+  return radius + 0.5 * elongation;
+}
 
 /// Moves the spring along by the last step and applies the law; returns the friction work, J.
 inline double follow_surface(SurfaceContact& c, const Meeting& m, double past_step) {

@@ -44,6 +44,8 @@ inline engine::Vec dot_all(engine::Vec a, engine::Vec b) {
 }
 
 /// x, y, z, 0: the fourth place of contact arrays carries other numbers.
-inline engine::Vec without_fourth(engine::Vec a) { return __builtin_shufflevector(a, engine::Vec{}, 0, 1, 2, 4); }
+inline engine::Vec without_fourth(engine::Vec a) {
+  return __builtin_shufflevector(a, engine::Vec{}, 0, 1, 2, 4);
+}
 
 }  // namespace gabion::dem

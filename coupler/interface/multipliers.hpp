@@ -2,7 +2,7 @@
 // From the two engines' projected trial motions to the multipliers.
 //
 //   gap      A mu = g_d + g_c,                 A = G_d m^^-1 G_d^T + G_c M^^-1 G_c^T
-//   slave    (M^ + N^T m^ N) U = b_c + b_d     the equivalent nodal system of the strict rows
+//   slave    (M^ + N^T m^ N) V = b_c + b_d     the equivalent nodal system of the strict rows
 //   row_sum  mu_i = g_i / sum_k A_ik           the explicit form of Xiao & Belytschko 2004; loses energy
 //
 // Hatted masses are weighted and include half a step of dashpots; prescribed components have no mobility.
@@ -34,7 +34,7 @@ class Multipliers {
   /// row_sum needs rows made by explicit_rows.
   Multipliers(const InterfaceRows& rows, const Inertia& grains, const Inertia& nodes, bool row_sum);
 
-  /// answer := mu (gap) or U (slave), [slots][3]; no allocation.
+  /// answer := mu (gap) or V (slave), [slots][3]; no allocation.
   void solve(std::span<const double> from_grains, std::span<const double> from_nodes, std::span<double> answer);
 
   const InterfaceReport& report() const { return report_; }
@@ -50,7 +50,7 @@ class Multipliers {
   std::vector<std::vector<double>> sums_;   ///< row_sum: row sums a component
   struct Prescribed {
     std::int32_t slot;
-    double inverse_mass;                    ///< of the node; its trial displacement stands
+    double inverse_mass;                    ///< of the node; its trial velocity stands
     std::vector<std::pair<std::int32_t, double>> column;  ///< free slots that feel it
   };
   std::array<std::vector<Prescribed>, 3> prescribed_;

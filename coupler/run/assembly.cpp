@@ -55,6 +55,8 @@ Box homogenisation_window(const scene::Scene& scene, const Packing& packing) {
   Box window = scene.ground.box;
   const double margin = 2.0 * packing.mean_diameter();
   const bool halved = scene.grains.zone && uses_mesh(scene.model);
+  // the mesh stands for the grains beyond the middle of the overlap: measure those
+  const double shared = scene.model == Model::bridging ? 0.5 * scene.coupling.overlap : 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     const double lo = scene.ground.box.lo[axis], hi = scene.ground.box.hi[axis];
     if (!scene.ground.periodic[axis]) {
@@ -66,8 +68,8 @@ Box homogenisation_window(const scene::Scene& scene, const Packing& packing) {
     // a zone that leaves only one side of the ground to the continuum: measure there
     const double zone_lo = scene.grains.zone->lo[axis], zone_hi = scene.grains.zone->hi[axis];
     const double below = zone_lo - lo, above = hi - zone_hi;
-    if (below > 3.0 * margin && above <= 0.0) window.hi[axis] = zone_lo;
-    if (above > 3.0 * margin && below <= 0.0) window.lo[axis] = zone_hi;
+    if (below > 3.0 * margin && above <= 0.0) window.hi[axis] = zone_lo + shared;
+    if (above > 3.0 * margin && below <= 0.0) window.lo[axis] = zone_hi - shared;
   }
   return window;
 }

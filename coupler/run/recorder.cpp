@@ -68,16 +68,22 @@ void Recorder::set_probes(std::vector<std::string> dem, std::vector<std::string>
 void Recorder::monitor(const std::string& stage, std::uint64_t step, double time, double dt, const Advance& advance,
                        double steps_per_second) {
   double unbalanced = 0.0, speed = 0.0, interface_motion = 0.0;
+  std::array<double, 7> momentum{};  // linear, angular, sum of m |v|
   for (const auto* report : {&advance.dem, &advance.continuum})
     if (*report) {
       unbalanced = std::max(unbalanced, (*report)->unbalanced);
       speed = std::max(speed, (*report)->largest_speed);
       interface_motion = std::max(interface_motion, (*report)->largest_displacement);
+      for (std::size_t k = 0; k < momentum.size(); ++k) momentum[k] += (*report)->momentum[k];
     }
   if (!monitor_)
     monitor_ = std::make_unique<History>(folder_.history(
-        "monitor.csv", {"step", "time [s]", "dt [s]", "unbalanced", "largest speed [m/s]", "interface displacement [m]", "steps per second"}));
-  monitor_->append({static_cast<double>(step), time, dt, unbalanced, speed, interface_motion, steps_per_second});
+        "monitor.csv", {"step", "time [s]", "dt [s]", "unbalanced", "largest speed [m/s]", "interface displacement [m]", "steps per second",
+                        "momentum.x [kg m/s]", "momentum.y [kg m/s]", "momentum.z [kg m/s]", "angular.x [kg m2/s]", "angular.y [kg m2/s]",
+                        "angular.z [kg m2/s]", "sum of m v [kg m/s]"}));
+  std::vector<double> row{static_cast<double>(step), time, dt, unbalanced, speed, interface_motion, steps_per_second};
+  row.insert(row.end(), momentum.begin(), momentum.end());
+  monitor_->append(row);
   if (scene_.run.measure_energy) {
     std::vector<double> row = energy_.add(advance.dem, advance.continuum);
     row.insert(row.begin(), time - dt);  // the ledger is that of the last step's t_n

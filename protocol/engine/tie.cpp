@@ -87,7 +87,6 @@ void Tie::project_gap(const Motion& motion, double dt) {
 }
 
 void Tie::project_slave(const Motion& motion, double dt) {
-  const Vec step = splat(dt);
   const bool viscous = !motion.viscosity.empty();
   for (std::size_t s = 0; s < slots_; ++s) {
     Vec total{};
@@ -95,7 +94,7 @@ void Tie::project_slave(const Motion& motion, double dt) {
       const std::int32_t e = tied_[turned_rows_[k]];
       Vec inertia = splat(motion.mass[e]);
       if (viscous) inertia += splat(0.5 * dt) * motion.viscosity[e];
-      total += splat(turned_values_[k]) * inertia * (motion.displacement[e] - origin_[e] + step * motion.velocity[e]);
+      total += splat(turned_values_[k]) * inertia * motion.velocity[e];
     }
     store(&projected_[3 * s], total);
   }
@@ -122,10 +121,9 @@ void Tie::correct(Motion& motion, const StepContext& context) {
     const bool viscous = !motion.viscosity.empty();
     for (std::size_t t = 0; t < tied_.size(); ++t) {
       const std::int32_t e = tied_[t];
-      Vec target{};
+      Vec corrected{};
       for (std::int32_t k = row_ptr_[t]; k < row_ptr_[t + 1]; ++k)
-        target += splat(values_[k]) * load(&answer_[3 * columns_[k]]);
-      const Vec corrected = rate * (target - (motion.displacement[e] - origin_[e]));
+        corrected += splat(values_[k]) * load(&answer_[3 * columns_[k]]);
       Vec inertia = splat(motion.mass[e]);
       if (viscous) inertia += splat(0.5 * context.dt) * motion.viscosity[e];
       const Vec impulse = inertia * (corrected - motion.velocity[e]);

@@ -3,9 +3,10 @@
 // coupler answers. See docs/theory.md, "Rows", and PROTOCOL.md, TIE.
 //
 //   gap    send  g_k = sum_e G_ke (v*_e + u_e/dt),            then  v_e = v*_e - m_e^-1 sum_k G_ke mu_k
-//   slave  send  b_s = sum_i N_is (m_i + c dt/2) (u_i + dt v*_i),  then  v_i = (sum_s N_is U_s - u_i)/dt
+//   slave  send  b_s = sum_i N_is (m_i + c dt/2) v*_i,        then  v_i = sum_s N_is V_s
 //
-//   u counts from the moment the rows were set (or from where a checkpoint left it)
+//   u counts from the moment the rows were set (or from where a checkpoint left it). Slave rows work on velocities
+//   alone: displacements there would bring their own round-off, which grows with the distance travelled.
 
 #include <cstdint>
 #include <span>

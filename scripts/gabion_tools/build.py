@@ -24,7 +24,7 @@ def ensure(yes=False, everything=False):
     packages.ensure(yes)
     BUILD.mkdir(exist_ok=True)
     log_path = BUILD / "build.log"
-    with open(log_path, "w", encoding="utf-8") as log:
+    with open(log_path, "w", encoding="utf-8", buffering=1) as log:
         if not (BUILD / "build.ninja").exists():
             compiler_cache = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
             follow(["cmake", "-S", str(REPOSITORY), "-B", str(BUILD), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",

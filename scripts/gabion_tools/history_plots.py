@@ -123,9 +123,9 @@ def block(run):
             top.plot(time, values, "k", linewidth=1.3)
             top.set_ylabel(label(column))
         elif name == "force_filtered":
-            below.plot(time, values, "#d62728", linewidth=1.5, label="filtered", zorder=3)
+            below.plot(time, values, "#d62728", linewidth=1.5, label="vertical, mean over 4 ms", zorder=3)
         elif name.startswith("force") and name.endswith("z"):
-            below.plot(time, values, "0.6", linewidth=0.8, label="raw, vertical")
+            below.plot(time, values, "0.6", linewidth=0.8, label="vertical, raw")
     top.set_title(title(run, "Block: penetration and force"))
     below.set(xlabel="time [s]", ylabel="force [N]")
     below.legend()

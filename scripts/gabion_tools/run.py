@@ -1,6 +1,7 @@
 """gabion run: one scene, one model or several, then summary, plots and report."""
 
 import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -49,7 +50,6 @@ def overrides(options, model):
 
 def check_scene(scene, changes):
     """Exit code of the coupler's own check, which prints what it found."""
-    import subprocess
     return subprocess.run([str(executable("coupler")), str(scene), "--check", *scenes.override_arguments(changes)],
                           stdin=subprocess.DEVNULL, check=False).returncode
 

@@ -3,9 +3,11 @@
 import hashlib
 import json
 import math
+import os
 import re
 import shutil
 import subprocess
+from pathlib import Path
 
 from gabion_tools import processes, run, scenes
 from gabion_tools.errors import Failure
@@ -51,7 +53,10 @@ class Context:
         self.full, self.seed, self.overrides = full, seed, list(overrides)
         self.case = ""
         self.runs = {}
-        shutil.rmtree(RUNS, ignore_errors=True)
+        self.root = RUNS / str(os.getpid())
+        for old in RUNS.glob("*"):  # of calls that have ended
+            if not (old.name.isdigit() and Path(f"/proc/{old.name}").exists()) or old == self.root:
+                shutil.rmtree(old, ignore_errors=True)
 
     def figure(self, name, value, unit, goal):
         """One figure of the present case, for yield."""
@@ -89,7 +94,7 @@ class Context:
         path = scenes.find(str(scene))
         key = hashlib.sha256(json.dumps([str(path), changes, threads, repeat]).encode()).hexdigest()[:12]
         if key not in self.runs:
-            folder = RUNS / f"{path.stem}-{key}"
+            folder = self.root / f"{path.stem}-{key}"
             folder.mkdir(parents=True)
             code = processes.couple(path, scenes.override_arguments(changes), folder,
                                     run.engines(scenes.model(path, changes), threads), quiet=True)

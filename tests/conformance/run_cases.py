@@ -95,14 +95,13 @@ class RunCases:
 
         def answer(step, gap):
             sent.append(gap)
-            t = (step + 1) * self.dt
-            return [[4.0 * t, 0, 0], [0, 2.0 * t, 0]]
+            return [[4.0, 0, 0], [0, 2.0, 0]]
 
         client.run(10, self.dt, answer=answer)
         u = client.ask("FETCH", field="displacement")["values"].rows()[0]
         self.assertAlmostEqual(u[0], 10 * self.dt, 12)
         self.assertAlmostEqual(u[1], 15 * self.dt, 12)
-        impulse = self.ready["mass"].values[0] * self.dt * 0.5  # first step, at rest: m (u + dt v*)
+        impulse = self.ready["mass"].values[0] * 0.5  # first step, nothing deformed: m v*
         self.assertAlmostEqual(sent[0][0][0] / (0.25 * impulse), 1.0, 12)
         self.assertAlmostEqual(sent[0][1][0] / (0.75 * impulse), 1.0, 12)
 

@@ -67,7 +67,7 @@ class SessionCases:
     def test_a_frame_that_is_too_large_before_the_handshake_is_refused(self):
         self.launch()
         client = self.connect()
-        client.send_raw(MESSAGES["HELLO"]["id"], encode("HELLO", {"token": "x" * 100000}))
+        client.send("HELLO", protocol_version=VERSION, token=TOKEN, software="x" * 100000)
         with self.assertRaises(ConnectionError):
             client.receive_any()
         self.connect().hello(TOKEN)

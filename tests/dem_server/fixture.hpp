@@ -15,9 +15,13 @@ struct NoExchange : engine::Exchange {
 };
 
 /// k_n = 1e6 r and k_s = 4e5 r N/m per grain, density 2000, infinite friction and strength.
-inline GrainMaterial elastic_material() { return {1e6, 4e5, 2000.0, INFINITY, INFINITY, INFINITY}; }
+inline GrainMaterial elastic_material() {
+  return {1e6, 4e5, 2000.0, INFINITY, INFINITY, INFINITY};
+}
 
-inline GrainMaterial frictional_material(double friction) { return {1e6, 4e5, 2000.0, friction, 0.0, 0.0}; }
+inline GrainMaterial frictional_material(double friction) {
+  return {1e6, 4e5, 2000.0, friction, 0.0, 0.0};
+}
 
 struct Scene {
   DemEngine engine;

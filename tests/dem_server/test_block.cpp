@@ -33,10 +33,10 @@ TEST_CASE("mass properties of a box and nearest points") {
   CHECK(body.inertia[0][1] == Approx(0.0).margin(1e-12));
 
   const auto near = [&](Vec x) { return nearest_point(body, vec(3, -2, 5) + x); };
-  CHECK(near(vec(1.5, 0.3, 0.2)).distance == Approx(1.0));               // face
-  CHECK(near(vec(1.5, 2.0, 0.2)).distance == Approx(std::sqrt(2.0)));    // edge
-  CHECK(near(vec(1.5, 2.0, 2.5)).distance == Approx(std::sqrt(3.0)));    // corner
-  CHECK(near(vec(0.4, 0.0, 0.0)).distance == Approx(-0.1));              // inside
+  CHECK(near(vec(1.5, 0.3, 0.2)).distance == Approx(1.0));             // face
+  CHECK(near(vec(1.5, 2.0, 0.2)).distance == Approx(std::sqrt(2.0)));  // edge
+  CHECK(near(vec(1.5, 2.0, 2.5)).distance == Approx(std::sqrt(3.0)));  // corner
+  CHECK(near(vec(0.4, 0.0, 0.0)).distance == Approx(-0.1));            // inside
   CHECK(near(vec(0.4, 0.0, 0.0)).outward[0] == Approx(1.0));
   CHECK(near(vec(1.5, 2.0, 2.5)).outward[2] == Approx(1 / std::sqrt(3.0)));
 

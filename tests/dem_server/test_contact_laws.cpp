@@ -55,8 +55,7 @@ TEST_CASE("gross sliding follows the impulse ratio") {
   CHECK(std::fabs(s.spin(0)[2]) == Approx(2.5 * mu * 2 * vn / r).epsilon(1e-3));
   CHECK(s.spin(0)[2] == Approx(s.spin(1)[2]).epsilon(1e-9));
   const double kinetic_before = s.engine.motion.mass[0] * (vn * vn + vt * vt);
-  CHECK(s.energy("friction") + s.energy("kinetic") + s.energy("rotational") ==
-        Approx(kinetic_before).epsilon(1e-4));
+  CHECK(s.energy("friction") + s.energy("kinetic") + s.energy("rotational") == Approx(kinetic_before).epsilon(1e-4));
   CHECK(s.energy("friction") > 0.01 * kinetic_before);
 }
 
@@ -141,7 +140,7 @@ TEST_CASE("a bond breaks in shear, slides with friction after, and the balance s
   GrainMaterial material = elastic_material();
   material.friction = 0.2;
   material.shear_strength = 400.0;  // times r^2: 100 N
-  TwoGrains s(material, -0.02);  // overlapping, yet stress-free
+  TwoGrains s(material, -0.02);     // overlapping, yet stress-free
   s.engine.make_bonds(0.0);
   s.prepare(Geometry::updated);
   s.step(1e-9);

@@ -34,7 +34,7 @@ TEST_CASE("contact history survives rebuilds: every step or hardly ever") {
   often.step(dt, 400);
   seldom.step(dt, 400);
   CHECK(often.count("rebuilds") > 390);
-  CHECK(seldom.count("rebuilds") < 30);
+  CHECK(seldom.count("rebuilds") < 0.1 * often.count("rebuilds"));
   CHECK(often.count("broken") > 20);
   CHECK(often.count("sliding") > 0);
   CHECK(often.count("broken") == seldom.count("broken"));
@@ -116,7 +116,8 @@ TEST_CASE("small motions: updated geometry is frozen geometry") {
   updated.step(dt, 500);
   double difference = 0.0, size = 0.0;
   for (std::size_t i = 0; i < s.x.size(); ++i) {
-    difference = std::max(difference, norm(frozen.engine.motion.displacement[i] - updated.engine.motion.displacement[i]));
+    difference =
+        std::max(difference, norm(frozen.engine.motion.displacement[i] - updated.engine.motion.displacement[i]));
     size = std::max(size, norm(frozen.engine.motion.displacement[i]));
   }
   CHECK(difference < 1e-6 * size);
@@ -191,13 +192,15 @@ TEST_CASE("a small grain between two large ones holds by friction up to its cone
   const double R = 1.0, r = 0.05, mu = 0.3, press = 50.0;
   for (const double share : {0.9, 1.1}) {
     Scene scene;
-    scene.grains({vec(0, 0, 0), vec(2 * (R + r) / 2, 0, 0), vec(2 * (R + r), 0, 0)}, {R, r, R}, frictional_material(mu));
+    scene.grains({vec(0, 0, 0), vec(2 * (R + r) / 2, 0, 0), vec(2 * (R + r), 0, 0)}, {R, r, R},
+                 frictional_material(mu));
     using gabion::engine::History;
     scene.engine.boundary.add({"left", {0}, 15, vec(0, 0, 0), {}}, 3);
     scene.engine.boundary.add({"right", {2}, 14, vec(0, 0, 0), {}}, 3);
     scene.engine.boundary.add({"roll", {1}, 8, vec(0, 0, 0), {}}, 3);
     scene.engine.boundary.add({"press", {2}, {vec(-press, 0, 0)}, History("constant", {1.0})}, 3);
-    scene.engine.boundary.add({"pull", {1}, {vec(0, 0, -share * 2 * mu * press)}, History("ramp", {1.0, 20.0, 10.0})}, 3);
+    scene.engine.boundary.add({"pull", {1}, {vec(0, 0, -share * 2 * mu * press)}, History("ramp", {1.0, 20.0, 10.0})},
+                              3);
     scene.prepare(Geometry::updated);
     const double dt = 0.5 * scene.engine.stable_step();
     double fall = 0.0;

@@ -45,6 +45,14 @@ class PlotsTest(LauncherTest):
         np.testing.assert_equal(joined, {"reactions": {"time [s]": [0.0, 1.0], "a [N]": [1.0, np.nan],
                                                        "b [N]": [np.nan, 2.0]}})
 
+    def test_the_filtered_force_is_a_centred_mean(self):
+        time = np.linspace(0, 0.1, 1001)
+        wave = run_data.centred_mean(time, np.sin(2 * np.pi * time / 0.004), 0.004)
+        self.assertLess(np.abs(wave[20:-20]).max(), 1e-3)
+        np.testing.assert_allclose(run_data.centred_mean(time, 3 * time)[20:-20], 3 * time[20:-20], atol=1e-4)
+        table = run_data.with_filtered_force({"time [s]": time, "force.z [N]": np.full(1001, 7.0)})
+        np.testing.assert_allclose(table["force_filtered [N]"], 7.0)
+
     def test_a_plane_cuts_a_cube_in_a_square(self):
         nodes = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], float)
         (polygon, element), = section_plot.cut_elements(nodes, np.arange(8).reshape(1, 8), 1, 0.25)

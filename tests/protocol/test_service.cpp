@@ -71,7 +71,9 @@ TEST_CASE("before HELLO no large frame is taken") {
   Session session;
   session.serve();
   Hello hello;
-  hello.token = std::string(100000, 'x');
+  hello.protocol_version = protocol_version;
+  hello.token = Session::token;
+  hello.software = std::string(100000, 'x');
   session.client().send(hello);
   CHECK(session.outcome.get() == Service::Outcome::refused);
 }

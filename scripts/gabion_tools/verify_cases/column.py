@@ -1,0 +1,73 @@
+"""A column under its own weight, periodic sideways: settlement of the top and vertical stress against all grains.
+
+Settlement: the coupler's probe on the top, an affine fit to the grains within two diameters. Stress: what the strain
+of the mesh and its share carry together with the grains must be the weight above; it is measured where one medium
+is alone, below the overlap in the mesh and at the base by the reaction, against the weight of the all-grain column.
+"""
+
+import numpy as np
+
+from gabion_tools import sample_measure as sample
+
+TITLE = "column under its own weight: settlement and vertical stress of the coupled models against all grains"
+
+SCENE = "column"
+GRAVITY = 9.81
+# radius, width, mesh and heights in proportion: 10 mean diameters wide
+FINE = {"grains.radius": {"uniform": ["0.02 m", "0.04 m"]}, "mesh.size": "0.15 m"}
+
+
+def top(run):
+    return run.history("probes", "top.z")[-1]
+
+
+def base_reaction(run):
+    """Force that the base carries, N; the grains' and the mesh's."""
+    columns = [name for name in run.histories["reactions"] if "zmin.z" in name]
+    return sum(run.histories["reactions"][name][-1] for name in columns)
+
+
+def weight_above(reference, level):
+    """Of the all-grain column above a level, N; a grain that the level cuts counts by its volume."""
+    grains = reference.state("grains")
+    r, height = grains["radius"], grains["position"][:, 2] - level
+    t = np.clip((height + r) / (2 * r), 0.0, 1.0)
+    return GRAVITY * (sample.grain_mass(reference) * t * t * (3 - 2 * t)).sum()
+
+
+def mesh_stress(run):
+    """{height of an element layer: mean vertical stress, Pa} of layers that the mesh carries alone."""
+    mesh = run.state("mesh")
+    heights = mesh["nodes"][mesh["elements"]][:, :, 2].mean(axis=1)
+    layers = np.unique(np.round(heights, 9))
+    return {h: mesh["stress"][np.abs(heights - h) < 1e-6, 2].mean() for h in layers
+            if mesh["weight"][np.abs(heights - h) < 1e-6].min() > 1 - 1e-12}
+
+
+def stress_error(run, reference, area):
+    """Largest departure of the mesh's vertical stress from the weight of the all-grain column above, over that at the base."""
+    largest = weight_above(reference, -np.inf) / area
+    return max(abs(-stress - weight_above(reference, h) / area) for h, stress in mesh_stress(run).items()) / largest
+
+
+def run(context):
+    size = FINE if context.full else {}
+    reference = context.run_scene(SCENE, {**size, "model": "dem"})
+    low, high = sample.ground(reference)
+    area = (high[0] - low[0]) * (high[1] - low[1])
+    weight = weight_above(reference, -np.inf)
+    yield context.figure("settlement_dem", -top(reference) * 1e3, "mm", "report")
+    residual = max(stage["unbalanced"] for stage in reference.summary["stages"])
+    models = {"bridging": {"model": "bridging"}, "edge": {"model": "edge"}, "continuum": {"model": "continuum"},
+              "strict": {"model": "bridging", "coupling.bridging.rows": "strict"}}
+    goals = {"bridging": "-0.005 .. 0.005", "edge": "-0.01 .. 0.01"}
+    for name, choice in models.items():
+        done = context.run_scene(SCENE, {**size, **choice})
+        goal = goals.get(name, "report")
+        yield context.figure(f"settlement_{name}_error", top(done) / top(reference) - 1, "", goal)
+        yield context.figure(f"stress_{name}_error", stress_error(done, reference, area), "",
+                             "<= 0.003" if name == "bridging" else "report")
+        yield context.figure(f"weight_{name}_error", base_reaction(done) / weight - 1, "", "report")
+        if name in goals:
+            residual = max([residual] + [stage["unbalanced"] for stage in done.summary["stages"]])
+    yield context.figure("residual", residual, "", "<= 1e-6")

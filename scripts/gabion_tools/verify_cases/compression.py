@@ -1,0 +1,60 @@
+"""A pressure pulse on the head of a cube with free sides: first peaks at the head (A) and the middle (B), and period.
+
+The mesh has the constants that the all-grain sample shows in the triaxial case, with the grains' own mass. Peak: first
+maximum of the downward displacement. Period: twice the time between the two zero crossings that follow the pulse.
+"""
+
+import numpy as np
+
+from gabion_tools.errors import Failure
+from gabion_tools.verify_cases import triaxial
+
+TITLE = "stress pulse on a cube: peaks and period of the coupled models against all grains"
+
+SCENE = "compression"
+LONG = "80 ms"  # several periods, so that one is measured between crossings of the same sign
+ENOUGH = 0.3    # of the largest displacement: smaller maxima are no peaks
+
+
+def first_peak(time, down):
+    """(time, value) of the first maximum, through the three samples around it."""
+    inner = down[1:-1]
+    at = np.flatnonzero((inner > down[:-2]) & (inner >= down[2:]) & (inner > ENOUGH * down.max()))
+    if len(at) == 0:
+        raise Failure("the displacement has no maximum: the run is too short")
+    k = at[0] + 1
+    before, here, after = down[k - 1:k + 2]
+    shift = 0.5 * (before - after) / (before - 2 * here + after)
+    return time[k] + shift * (time[k + 1] - time[k]), here - 0.25 * (before - after) * shift
+
+
+def period(time, down):
+    """Between the first two crossings of the same sign after the first peak."""
+    start = first_peak(time, down)[0]
+    k = np.flatnonzero((down[:-1] > 0) & (down[1:] <= 0) & (time[:-1] > start))
+    if len(k) < 2:
+        raise Failure("fewer than two zero crossings of the same sign: the run is too short")
+    crossing = time[k] + (time[k + 1] - time[k]) * down[k] / (down[k] - down[k + 1])
+    return crossing[1] - crossing[0]
+
+
+def measured(run):
+    time = run.history("probes", "time")
+    down = {name: -run.history("probes", f"{name}.z") for name in "AB"}
+    return {"peak_A": first_peak(time, down["A"])[1], "peak_B": first_peak(time, down["B"])[1],
+            "period": period(time, down["A"])}
+
+
+def run(context):
+    size = triaxial.FINE if context.full else {}
+    sample = context.run_scene(triaxial.SCENE, {**size, "model": "dem"})
+    stages = {"stages": [{"name": "pulse", "damping": 0, "duration": LONG}]}
+    reference = measured(context.run_scene(SCENE, {**size, **stages, "model": "dem"}))
+    for name, value in reference.items():
+        yield context.figure(f"{name}_dem", value * 1e3, "ms" if name == "period" else "mm", "report")
+    for model in ("continuum", "bridging", "edge"):
+        done = context.run_scene(SCENE, {**size, **stages, "model": model, **triaxial.constants(sample, model)})
+        for name, value in measured(done).items():
+            yield context.figure(f"{name}_{model}_error", value / reference[name] - 1, "",
+                                 "report" if model == "continuum" else "-0.01 .. 0.01")
+        yield context.figure(f"energy balance, {model}", done.summary["energy"]["balance_error"], "", "<= 1e-6")

@@ -1,0 +1,94 @@
+"""Apparent modulus and Poisson's ratio of a cube under axial strain and constant lateral pressure, four models.
+
+Strain: affine fit of the increments after confinement, at the same points for every model, 0.2 to 0.8 of the height
+and the inner 0.7 of the width. Stress: reaction of the head over the area, less the confinement.
+
+The grains at a free face carry less than those inside (a cube of 16 diameters is 20 % softer than its inner part),
+so the mesh is given the constants of the sample, not of its inner part: those that the all-grain run shows where the
+mesh replaces grains, each grain counted with the share that the mesh takes over.
+"""
+
+import numpy as np
+
+from gabion_tools import sample_measure as sample
+
+TITLE = "triaxial compression of a cube: modulus and Poisson's ratio of the coupled models against all grains"
+
+SCENE = "triaxial"
+CONFINEMENT = 10e3  # Pa, as in the scene
+BORDER, OVERLAP = 1.5, 1.0  # m, as in the scene: height of the border, which is also the middle of the overlap
+HEIGHT = (0.2, 0.8)
+WIDTH = 0.7
+MODELS = {
+    "continuum": {"model": "continuum"},
+    "bridging": {"model": "bridging"},
+    "edge": {"model": "edge"},
+    "strict": {"model": "bridging", "coupling.bridging.rows": "strict"},
+}
+FINE = {"grains.radius": {"uniform": ["0.036 m", "0.072 m"]}, "mesh.size": "0.25 m"}  # 20 000 grains
+
+
+def window(points, box):
+    """Points between the parts of the sample that its faces disturb."""
+    low, high = box
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    height = (points[:, 2] - low[2]) / (high[2] - low[2])
+    return (np.all(np.abs(points[:, :2] - middle[:2]) < WIDTH * half[:2], axis=1)
+            & (height > HEIGHT[0]) & (height < HEIGHT[1]))
+
+
+def strained(run, reference):
+    """Increments of displacement after confinement."""
+    before = sample.last_state_of(run, "confine")
+    return sample.displacement(run, reference) - sample.displacement(run, reference, before)
+
+
+def axial_stress(run, box):
+    columns = [name for name in run.histories["reactions"] if "zmax.z" in name]
+    head = -sum(run.histories["reactions"][name][-1] for name in columns)
+    low, high = box
+    return head / ((high[0] - low[0]) * (high[1] - low[1])) - CONFINEMENT
+
+
+def moduli(run, reference, share=None):
+    """(E, nu) that the run shows in the window, points weighted with share."""
+    box, points = sample.ground(reference), reference.state("grains")["position"]
+    chosen = window(points, box)
+    g = sample.gradient(points[chosen], strained(run, reference)[chosen], None if share is None else share[chosen])
+    return axial_stress(run, box) / -g[2, 2], -(g[0, 0] + g[1, 1]) / (2 * g[2, 2])
+
+
+def replaced_share(reference, model):
+    """What the mesh takes over of every grain: all of it in a continuum, 1 - w in an overlap, the far side of a border."""
+    height = reference.state("grains")["position"][:, 2]
+    if model == "continuum":
+        return np.ones(len(height))
+    if model == "edge":
+        return (height > BORDER).astype(float)
+    return np.clip(0.5 + (height - BORDER) / OVERLAP, 0.0, 1.0)
+
+
+def constants(reference, model):
+    """Changes that give the mesh of this model the constants of the grains that it replaces."""
+    share, box = replaced_share(reference, model), sample.ground(reference)
+    young, poisson = moduli(reference, reference, share)
+    height, area = box[1, 2] - box[0, 2], np.prod(box[1, :2] - box[0, :2])
+    part = share.mean() if model == "continuum" else 0.5  # both borders halve the sample
+    density = (sample.grain_mass(reference) * share).sum() / (part * height * area)
+    return sample.material_of_sample(reference, float(young), float(poisson), float(density))
+
+
+def run(context):
+    size = FINE if context.full else {}
+    reference = context.run_scene(SCENE, {**size, "model": "dem"})
+    young, poisson = moduli(reference, reference)
+    yield context.figure("E_dem", young / 1e6, "MPa", "report")
+    yield context.figure("nu_dem", poisson, "", "report")
+    for name, choice in MODELS.items():
+        done = context.run_scene(SCENE, {**size, **choice, **constants(reference, name)})
+        e, nu = moduli(done, reference)
+        aim = name in ("bridging", "edge")
+        yield context.figure(f"E_{name}_over_dem", e / young - 1, "", "-0.01 .. 0.01" if aim else "report")
+        yield context.figure(f"nu_{name}_minus_dem", nu - poisson, "", "-0.01 .. 0.01" if aim else "report")
+        yield context.figure(f"unbalanced, {name}", max(stage["unbalanced"] for stage in done.summary["stages"]), "",
+                             "<= 1e-6")
