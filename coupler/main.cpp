@@ -1,6 +1,7 @@
 // The coupler: reads a scene, drives the engines, writes the run folder.
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -17,7 +18,11 @@ namespace {
 using namespace gabion;
 
 /// Exit codes that scripts can rely on; docs/running.md.
-constexpr int finished = 0, failed = 1, user_mistake = 2, physics = 3;
+constexpr int finished = 0, failed = 1, user_mistake = 2, physics = 3, interrupted_by_user = 130;
+
+/// Set by SIGINT and SIGTERM; the simulation looks at it between two chunks of steps.
+volatile std::sig_atomic_t interrupted = 0;
+void interrupt(int) { interrupted = 1; }
 
 struct Arguments {
   std::string scene, out, dem, continuum, token_file;
@@ -54,6 +59,8 @@ int run(const Arguments& arguments) {
   need(grains, arguments.dem, "--dem");
   need(mesh, arguments.continuum, "--continuum");
 
+  if (grains && mesh && arguments.dem == arguments.continuum)
+    throw protocol::AddressError("--continuum: the same address as --dem, " + arguments.dem + "; each engine has a port of its own");
   const std::string token = read_token(arguments.token_file);
   std::unique_ptr<coupler::EngineLink> dem, continuum;
   if (!arguments.dem.empty())
@@ -64,15 +71,19 @@ int run(const Arguments& arguments) {
   using Existing = coupler::RunFolder::Existing;
   coupler::RunFolder folder(arguments.out, arguments.overwrite ? Existing::replace : Existing::refuse);
   folder.write_text("scene.effective.json", read.effective);
-  coupler::Simulation simulation(read.scene, folder, dem.get(), continuum.get());
+  auto simulation = std::make_unique<coupler::Simulation>(read.scene, folder, dem.get(), continuum.get());
+  simulation->stop_when(&interrupted);
   try {
-    const nlohmann::json summary = simulation.run();
+    const nlohmann::json summary = simulation->run();
     for (coupler::EngineLink* link : {dem.get(), continuum.get()})
       if (link) link->say_goodbye();
     std::cerr << "finished: " << summary["step"]["count"] << " steps, energy error " << summary["energy"]["balance_error"]
               << ", results in " << arguments.out << "\n";
   } catch (const std::exception& error) {
     folder.log(std::string("stopped: ") + error.what());
+    const bool began = simulation->began();
+    simulation.reset();
+    if (!began) folder.abandon();  // nothing was computed: the next try finds the folder as this one did
     throw;
   }
   return finished;
@@ -82,6 +93,8 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   _mm_setcsr(_mm_getcsr() | 0x8040);  // denormals are zero, in and out
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
   Arguments arguments;
   CLI::App app{"Couples a dem_server and a continuum_server by Lagrange multipliers, and writes the results of a scene."};
   app.add_option("scene", arguments.scene, "scene file (JSON)")->required();
@@ -117,6 +130,12 @@ int main(int argc, char** argv) {
     std::cerr << "\ncoupler: " << error.what() << "\n";
     if (error.code == "value" || error.code == "token" || error.code == "version") return user_mistake;
     return error.code == "physics" ? physics : failed;
+  } catch (const protocol::VersionMismatch& error) {
+    std::cerr << "\ncoupler: " << error.what() << "; use programs of the same release\n";
+    return user_mistake;
+  } catch (const coupler::Interrupted& error) {
+    std::cerr << "\n" << arguments.scene << ": " << error.what() << "\n";
+    return interrupted_by_user;
   } catch (const coupler::RunFailed& error) {
     std::cerr << "\n" << arguments.scene << ": " << error.what() << "\n";
     return physics;

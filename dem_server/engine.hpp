@@ -74,7 +74,7 @@ class DemEngine : public engine::Engine {
 
   static std::vector<std::string> field_names();
   /// Linear momentum, angular momentum about the origin (spins and block included), sum of m |v|.
-  std::vector<double> momentum() const;
+  std::vector<double> momentum() const override;
   const Grains& grains() const { return grains_; }
   const ContactTable& contacts() const { return contact_.table; }
   const std::vector<Pair>& bonds() const { return bonds_; }

@@ -39,6 +39,11 @@ std::string system_error(const fs::path& path, const char* what) {
   return path.string() + ": " + what + ": " + std::strerror(errno);
 }
 
+void remove_own_files(const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (written_by_a_run(entry.path())) fs::remove_all(entry.path());
+}
+
 void remove_earlier_run(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
@@ -46,8 +51,7 @@ void remove_earlier_run(const fs::path& folder) {
       throw RunFolderError("run folder " + folder.string() + " holds '" + name +
                            "', which no run has written; nothing was removed. Choose another --out");
   }
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (written_by_a_run(entry.path())) fs::remove_all(entry.path());
+  remove_own_files(folder);
 }
 
 void refuse_content(const fs::path& folder) {
@@ -81,6 +85,13 @@ void RunFolder::write_text(std::string_view name, std::string_view content) cons
 void RunFolder::write_json(std::string_view name, const nlohmann::json& content) const {
   constexpr int indent = 2;
   write_text(name, content.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+void RunFolder::abandon() {
+  log_.close();
+  remove_own_files(path_);
+  std::error_code not_empty;
+  fs::remove(path_, not_empty);
 }
 
 void RunFolder::log(std::string_view message) {

@@ -36,6 +36,9 @@ class RunFolder {
     return History(file(name), std::move(columns));
   }
 
+  /// Removes what the coupler has written, and the folder when nothing else is in it.
+  void abandon();
+
   /// One line in run.log, with the seconds since the folder was opened; on disk when this returns.
   void log(std::string_view message);
 

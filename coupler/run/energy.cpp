@@ -8,7 +8,7 @@ namespace gabion::coupler {
 
 namespace {
 
-const std::set<std::string> works{"loads", "constraints", "multipliers"};
+const std::set<std::string> works{"loads", "constraints", "multipliers", "walls"};
 const std::set<std::string> stores{"kinetic", "rotational", "elastic", "gravity"};
 
 }  // namespace

@@ -6,7 +6,6 @@ namespace gabion::coupler {
 
 namespace {
 
-constexpr std::uint32_t protocol_version = 1;
 constexpr std::chrono::microseconds brief_spin{40};
 constexpr unsigned processes = 3;  // two engines and the coupler
 
@@ -25,12 +24,13 @@ EngineLink::EngineLink(const std::string& role, const protocol::Address& address
       connection_(protocol::Connection::connect(address.host, address.port, connect_deadline, role + "_server",
                                                 connection_options())) {
   protocol::Hello hello;
-  hello.protocol_version = protocol_version;
+  hello.protocol_version = protocol::protocol_version;
   hello.token = token;
   hello.role = "coupler";
   hello.scene_hash = scene_hash;
   hello.software = "gabion coupler";
-  const auto welcome = ask<protocol::Welcome>(hello);
+  connection_.send(hello);
+  const auto welcome = connection_.expect<protocol::Welcome>(greeting_deadline);
   if (welcome.role != role)
     throw protocol::AddressError("the engine at " + address.host + ":" + std::to_string(address.port) + " is '" + welcome.role +
                                   "', but '" + role + "' was wanted: swap --dem and --continuum");

@@ -47,6 +47,7 @@ class EngineLink {
   std::uint64_t bytes() const { return connection_.bytes_sent() + connection_.bytes_received(); }
 
   static constexpr std::chrono::seconds connect_deadline{10};
+  static constexpr std::chrono::seconds greeting_deadline{5};
   static constexpr std::chrono::seconds reply_deadline{20};  ///< starts anew with every heartbeat
   static constexpr std::chrono::seconds step_deadline{20};
 

@@ -158,7 +158,7 @@ Packing obtain_packing(const scene::Scene& scene, EngineLink* dem, const Cache& 
   if (packed) {
     log("packing: from the cache");
   } else {
-    if (!dem) throw std::runtime_error("the packing is not in the cache: a dem_server is needed to make it (--dem)");
+    if (!dem) throw protocol::AddressError("the packing is not in the cache: a dem_server is needed to make it (--dem)");
     log("packing: making it");
     packed = dem->ask<protocol::Packed>(pack);
     write_cached(path, *packed);
@@ -222,7 +222,7 @@ Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_pac
   if (measured) {
     log("stiffness of the packing: from the cache");
   } else {
-    if (!dem) throw std::runtime_error("the stiffness of the packing is not in the cache: a dem_server is needed to measure it (--dem)");
+    if (!dem) throw protocol::AddressError("the stiffness of the packing is not in the cache: a dem_server is needed to measure it (--dem)");
     log("stiffness of the packing: measuring it");
     protocol::Options options = options_of(scene);
     options.gravity = std::vector<double>{0, 0, 0};

@@ -79,11 +79,16 @@ void Simulation::prepare() {
     try {
       tie_.emplace(scene_, assembly_, *dem_, *continuum_);
     } catch (const std::runtime_error& problem) {
-      throw ScenarioError(std::string("coupling.rows: ") + problem.what());
+      throw ScenarioError(std::string("coupling: ") + problem.what());
     }
   }
   const bool gravity = scene_.gravity != scene::Point{};
   if (gravity && dem_ && continuum_ && scene_.model == scene::Model::edge) trim_gravity(scene_, assembly_, *dem_);
+  for (const scene::Stage& stage : scene_.stages) {
+    if (!stage.gravity) throw ScenarioError("stages.gravity: false is not supported in stage '" + stage.name + "'; leave it out, or set gravity to 0 for the whole scene");
+    if (stage.zero_displacements)
+      warnings_.push_back("stages.zero_displacements of '" + stage.name + "': displacements are still counted from the start of the run");
+  }
   recorder_.emplace(folder_, scene_, assembly_, grain_weights_);
   stepper_.emplace(dem_, continuum_, tie_ ? &*tie_ : nullptr);
   place_probes();
@@ -193,6 +198,10 @@ void Simulation::run_stage(const scene::Stage& stage) {
                    unbalanced, recorder_->energy().error());
     if (block_) recorder_->block_row(stepper_->time(), *block_, dem_->fetch("block"));
     watch(stage, last_);
+    if (stop_ && *stop_) {
+      recorder_->close();
+      throw Interrupted("interrupted at step " + std::to_string(stepper_->step()) + ", results up to t = " + number(stepper_->time()) + " s");
+    }
     if (scene_.output.every > 0.0 && stepper_->time() >= next_output_ - 0.5 * dt_) {
       recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
       next_output_ += scene_.output.every;

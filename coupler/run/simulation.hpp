@@ -1,6 +1,7 @@
 #pragma once
 // A run from the first message to the summary.
 
+#include <csignal>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -27,6 +28,11 @@ struct RunFailed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The user stopped the run; what was written can be read.
+struct Interrupted : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 class Simulation {
  public:
   /// Links may be null where the model does without them.
@@ -34,6 +40,10 @@ class Simulation {
 
   /// Everything; the summary is returned and written as summary.json. Throws the errors above and the protocol's.
   nlohmann::json run();
+  /// A flag that ends the run, with Interrupted, between two chunks of steps.
+  void stop_when(const volatile std::sig_atomic_t* flag) { stop_ = flag; }
+  /// True once a step was taken.
+  bool began() const { return stepper_ && stepper_->step() > 0; }
 
  private:
   void prepare();
@@ -51,6 +61,7 @@ class Simulation {
   EngineLink* dem_;
   EngineLink* continuum_;
   Log log_;
+  const volatile std::sig_atomic_t* stop_ = nullptr;
   Packing packing_;
   Assembly assembly_;
   std::optional<Faces> faces_;

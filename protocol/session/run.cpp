@@ -106,7 +106,7 @@ RunDone Service::summary(const Run& request, std::uint64_t taken, bool measured)
   done.probes.set_shape(std::array<std::uint64_t, 3>{probes.sampled_steps.size(), probes.names.size(), 3});
   done.probe_steps = std::move(probes.sampled_steps);
   done.probes.data = std::move(probes.samples);
-  done.momentum = engine_.motion.momentum();
+  done.momentum = engine_.momentum();
   done.state_hash = engine_.state_hash();
   return done;
 }

@@ -12,6 +12,8 @@ namespace gabion::protocol {
 
 namespace {
 
+constexpr int largest_thread_count = 256;
+
 constexpr int wrong_usage = 2;
 constexpr int failure = 1;
 constexpr int most_refusals = 100;  ///< clients turned away before the server gives up
@@ -70,7 +72,7 @@ int serve_main(int argc, char** argv, const std::string& name, const std::functi
   std::string listen = "127.0.0.1:0", token_file;
   double accept_timeout = 60.0, io_timeout = 30.0, idle_timeout = 600.0;
   long spin = settings.connection.spin.count();
-  settings.threads = omp_get_num_procs();
+  settings.threads = 1;
   settings.session.software = name + " " GABION_VERSION;
 
   CLI::App app("Gabion engine; serves one client and ends");
@@ -78,7 +80,7 @@ int serve_main(int argc, char** argv, const std::string& name, const std::functi
   app.set_version_flag("--version", settings.session.software);
   app.add_option("--listen", listen, "host:port to listen on; port 0 takes a free one")->capture_default_str();
   app.add_option("--threads", settings.threads, "threads to compute with")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1, largest_thread_count))
       ->capture_default_str();
   app.add_option("--token-file", token_file, "file with the token; else the environment variable GABION_TOKEN");
   app.add_option("--accept-timeout", accept_timeout, "s to wait for a client")

@@ -48,7 +48,7 @@ Connection Connection::connect(const std::string& host, std::uint16_t port, Dura
   auto socket = std::make_unique<Socket>();
   boost::system::error_code error;
   const auto found = tcp::resolver(socket->context).resolve(host, std::to_string(port), error);
-  if (error) throw ConnectionLost(name, "connecting", 0, "cannot find the host, " + error.message());
+  if (error) throw AddressError(name + ": cannot find the host, " + error.message() + "; check the address");
   for (;;) {
     for (const auto& entry : found) {
       error = try_connect(*socket, entry.endpoint(), deadline);

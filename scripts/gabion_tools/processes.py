@@ -52,7 +52,7 @@ class Engine:
         # A session of its own: Ctrl-C reaches the launcher only, which then stops the engines in order.
         try:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=self.log,
-                                            env={**os.environ, "GABION_TOKEN": token}, start_new_session=True,
+                                            env={"OMP_WAIT_POLICY": "passive", **os.environ, "GABION_TOKEN": token}, start_new_session=True,
                                             preexec_fn=die_with_parent)
         except OSError as error:
             self.log.close()
@@ -112,7 +112,7 @@ def watch(command, engines, token, log_path):
     log = open(log_path, "w", encoding="utf-8") if log_path else None
     died = None
     coupler = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
-                               env={**os.environ, "GABION_TOKEN": token}, preexec_fn=die_with_parent)
+                               env={"OMP_WAIT_POLICY": "passive", **os.environ, "GABION_TOKEN": token}, preexec_fn=die_with_parent)
     try:
         while True:
             try:

@@ -96,3 +96,18 @@ def grain_mass(reference):
     scene = effective(reference)
     density = float(scene["materials"][scene["ground"]["material"]]["density"].split()[0])
     return density * 4.0 / 3.0 * np.pi * reference.state("grains")["radius"] ** 3
+
+
+def seeds(context):
+    """One packing is off its mean by several per cent: figures are means over three, or of the one asked for."""
+    return (1, 2, 3) if context.seed is None else (context.seed,)
+
+
+def mean_figures(context, packings, goals):
+    """A figure for every name in packings, a list of {name: value}: the mean, and its standard error beside it."""
+    for name in packings[0]:
+        values = np.array([packing[name] for packing in packings])
+        yield context.figure(name, values.mean(), "", goals.get(name, "report"))
+        if len(values) > 1:
+            yield context.figure(f"standard error of {name}, {len(values)} packings",
+                                 values.std(ddof=1) / np.sqrt(len(values)), "", "report")

@@ -1,7 +1,7 @@
 """Speed of the engines alone on one thread, from bench_dem and bench_continuum.
 
 Goals: the fastest peer that carries the same physics, measured on a machine of this kind. Bonded grains with
-rotation: ESyS-Particle 2.3.5, 1.46 M particle-steps/s. Elements: the upper end of the published figures of LULESH's
+rotation: ESyS-Particle 2.3.5, 1.46 M particle-steps/s. Frictional grains: LAMMPS, 8.06. Elements: the upper end of the published figures of LULESH's
 one-point hexahedra, 1.68 M element-steps/s.
 """
 
@@ -12,6 +12,7 @@ TITLE = "speed of contacts and elements, one thread"
 
 LINE = re.compile(r"(?P<case>.*?)\s{2,}.*?(?P<value>[\d.]+) M (?P<unit>particle|element)-steps/s")
 GOALS = {"particle": "> 1.46", "element": "> 1.68"}
+FRICTIONAL_GOAL = "> 8.06"
 DEADLINE = 300  # s
 
 
@@ -24,4 +25,4 @@ def run(context):
             yield context.figure(f"{program} printed no speed", False, "", "= True")
         for row in found:
             yield context.figure(f"{program}: {row['case']}", float(row["value"]), f"M{row['unit'][0]}/s",
-                                 GOALS[row["unit"]])
+                                 FRICTIONAL_GOAL if row["case"].startswith("frictional") else GOALS[row["unit"]])
