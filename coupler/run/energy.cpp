@@ -37,7 +37,10 @@ std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& d
     ++side;
   }
   if (!started_) first_ = balance;
+  if (started_ && new_stage_) first_ += balance - previous_;
   started_ = true;
+  new_stage_ = false;
+  previous_ = balance;
   lost_ = lost;
   scale_ = std::max({scale_, moved, lost});
   drift_ = std::max(drift_, std::fabs(balance - first_));

@@ -19,6 +19,10 @@ class EnergyBalance {
   /// Adds a measurement and returns the row for energy.csv (without time).
   std::vector<double> add(const std::optional<protocol::RunDone>& dem, const std::optional<protocol::RunDone>& continuum);
 
+  /// The next measurement starts a new stage: a block set free, faces let go and the like bring energy that no ledger
+  /// entry knows; the balance is compared with itself from there on.
+  void start_stage() { new_stage_ = true; }
+
   double error() const { return error_; }                 ///< largest |balance - first| over the largest energy moved
   double multiplier_residual() const { return residual_; } ///< |work on grains + work on continuum| over the larger one
   double largest_energy() const { return scale_; }        ///< J
@@ -29,7 +33,8 @@ class EnergyBalance {
   std::vector<std::string> columns_;
   std::vector<double> last_;
   double first_ = 0.0, error_ = 0.0, residual_ = 0.0, scale_ = 0.0, lost_ = 0.0, drift_ = 0.0;
-  bool started_ = false;
+  double previous_ = 0.0;
+  bool started_ = false, new_stage_ = false;
 };
 
 }  // namespace gabion::coupler

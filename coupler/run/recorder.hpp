@@ -37,6 +37,7 @@ class Recorder {
   /// Step of the last stored state.
   std::uint64_t last_state_step() const { return last_state_step_; }
 
+  void start_stage() { energy_.start_stage(); }
   const EnergyBalance& energy() const { return energy_; }
   /// Largest displacement component of each probe over the run, m, and its last value.
   nlohmann::json figures() const;

@@ -180,11 +180,13 @@ void Simulation::run_stage(const scene::Stage& stage) {
   }
   log_("stage " + stage.name + ": dt " + number(dt) + " s (stable " + number(stable_dem_) + " s grains, " + number(stable_continuum_) + " s continuum)");
 
+  recorder_->start_stage();
   std::uint64_t taken = 0;
   double unbalanced = scene::infinity;
   const auto rested = [&] { return until_still && taken >= least && unbalanced < stage.unbalanced; };
   while (taken < most && !rested()) {
     std::uint64_t chunk = std::min<std::uint64_t>(std::max<std::uint64_t>(1, scene_.output.monitor_steps), most - taken);
+    if (taken == 0) chunk = 1;  // the stage's own first balance
     if (block_) chunk = std::min(chunk, block_row_steps);
     if (scene_.output.every > 0.0)
       chunk = std::min(chunk, std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil((next_output_ - stepper_->time()) / dt_ - 1e-6))));

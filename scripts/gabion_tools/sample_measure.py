@@ -26,7 +26,8 @@ def on_mesh(run, points, index=-1):
         slack = 1e-9 * (high - low)
         inside = np.flatnonzero(np.all((points >= low - slack) & (points <= high + slack), axis=1))
         along = (points[inside] - low) / (high - low)
-        found[inside] = sum(np.where(nodes[c] > 0.5 * (low + high), along, 1.0 - along).prod(axis=1)[:, None] * motion[c]
+        middle = 0.5 * (low + high)
+        found[inside] = sum(np.where(nodes[c] > middle, along, 1.0 - along).prod(axis=1)[:, None] * motion[c]
                             for c in corners)
     return found
 

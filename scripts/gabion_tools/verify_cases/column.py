@@ -50,7 +50,7 @@ def mesh_stress(run):
 
 
 def stress_error(run, reference, area):
-    """Largest departure of the mesh's vertical stress from the weight of the all-grain column above, over that at the base."""
+    """Largest departure of the mesh's vertical stress from the weight of the all-grain column above, relative."""
     largest = weight_above(reference, -np.inf) / area
     return max(abs(-stress - weight_above(reference, h) / area) for h, stress in mesh_stress(run).items()) / largest
 

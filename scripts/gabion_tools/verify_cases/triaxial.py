@@ -60,7 +60,7 @@ def moduli(run, reference, share=None):
 
 
 def replaced_share(reference, model):
-    """What the mesh takes over of every grain: all of it in a continuum, 1 - w in an overlap, the far side of a border."""
+    """What the mesh takes over of every grain: all in a continuum, 1 - w in an overlap, what lies beyond a border."""
     height = reference.state("grains")["position"][:, 2]
     if model == "continuum":
         return np.ones(len(height))
@@ -97,7 +97,7 @@ def one_packing(context, size, seed):
 def run(context):
     size = FINE if context.full else {}
     packings, rest = zip(*[one_packing(context, size, seed) for seed in sample.seeds(context)])
-    aims = [f"{what}_{name}_{how}_dem" for name in ("bridging", "edge") for what, how in (("E", "over"), ("nu", "minus"))]
+    aims = [figure.format(name) for name in ("bridging", "edge") for figure in ("E_{}_over_dem", "nu_{}_minus_dem")]
     for figure in sample.mean_figures(context, packings, dict.fromkeys(aims, "-0.01 .. 0.01")):
         if figure["figure"].endswith("E_dem"):
             figure["unit"] = "MPa"
