@@ -59,9 +59,9 @@ int run(const Arguments& arguments) {
   need(grains, arguments.dem, "--dem");
   need(mesh, arguments.continuum, "--continuum");
 
+  const std::string token = read_token(arguments.token_file);
   if (grains && mesh && arguments.dem == arguments.continuum)
     throw protocol::AddressError("--continuum: the same address as --dem, " + arguments.dem + "; each engine has a port of its own");
-  const std::string token = read_token(arguments.token_file);
   std::unique_ptr<coupler::EngineLink> dem, continuum;
   if (!arguments.dem.empty())
     dem = std::make_unique<coupler::EngineLink>("dem", protocol::parse_address(arguments.dem), token, read.hash_text);

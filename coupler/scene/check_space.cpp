@@ -66,7 +66,8 @@ void check_radius(Checker& check) {
   double largest = 0.0;
   const std::size_t stride = grains.radius_kind == "sieve" ? 2 : 1;
   for (std::size_t i = 0; i < r.size(); i += stride) largest = std::max(largest, r[i]);
-  if (2 * largest > smallest_extent(check.scene.ground.box))
+  // a random packing needs room for two of the largest grains side by side
+  if ((lattice ? 2 : 4) * largest > smallest_extent(check.scene.ground.box))
     check.error(
         "grains.radius",
         "grains that fit into the ground, whose smallest side is " + metres(smallest_extent(check.scene.ground.box)),
