@@ -182,7 +182,7 @@ class MistakesThatTheEnginesSee(Mistake):
     def test_packing_that_does_not_fit(self):
         dem, address = self.engine("dem_server")
         process = self.coupler("tiny.json", "--dem", address, *self.sets("model=dem", 'grains.radius={"uniform": ["0.25 m", "0.3 m"]}'))
-        self.check_mistake(process, "grains.radius", "smaller grains")
+        self.check_mistake(process, "grains.radius", "grains smaller")
 
     def test_measuring_without_grains(self):
         _, address = self.engine("continuum_server")
