@@ -158,6 +158,11 @@ void Recorder::reaction_row(double time, const Advance& advance) {
   reactions_->append(row);
 }
 
+void Recorder::block_shape(const PlacedBlock& block) {
+  block_vertices_ = flat(block.vertices);
+  results_.write_block_geometry({block_vertices_, block.face_ptr, block.face_vertices});
+}
+
 void Recorder::block_row(double time, const PlacedBlock& block, const std::vector<double>& state) {
   constexpr std::size_t velocity = 3, spin = 10, force = 13, torque = 16, corners = 19;
   block_vertices_.assign(state.begin() + corners, state.end());
@@ -183,6 +188,7 @@ void Recorder::state(const std::string& stage, std::uint64_t step, double time, 
     for (const FieldOf& f : node_fields) results_.node_field(f.name, continuum->fetch(f.name), f.components, f.unit);
     for (const FieldOf& f : cell_fields) results_.cell_field(f.name, continuum->fetch(f.name), f.components, f.unit);
   }
+  if (!block_vertices_.empty()) results_.block_vertices(block_vertices_);
   (void)tie;
   (void)dt;
   results_.end_state();

@@ -32,7 +32,9 @@ class Recorder {
   void state(const std::string& stage, std::uint64_t step, double time, double dt, EngineLink* dem,
              EngineLink* continuum, const InterfaceTie* tie);
 
-  /// A row of block.csv. state: field "block" of the engine. The first call also stores the block's shape.
+  /// The block's shape, before the first state; where it is goes with each state.
+  void block_shape(const PlacedBlock& block);
+  /// A row of block.csv. state: field "block" of the engine.
   void block_row(double time, const PlacedBlock& block, const std::vector<double>& state);
   /// Step of the last stored state.
   std::uint64_t last_state_step() const { return last_state_step_; }
@@ -55,7 +57,7 @@ class Recorder {
   std::unique_ptr<History> monitor_, energy_rows_, probes_, reactions_, counters_, block_;
   std::vector<std::string> dem_probes_, continuum_probes_;
   std::uint64_t last_state_step_ = 0;
-  std::vector<double> block_vertices_;
+  std::vector<double> block_vertices_;  ///< present corners, m; before its release where it would touch the grains
   std::map<std::string, std::array<double, 4>> probe_figures_;  ///< largest |component| 3, last z
 };
 

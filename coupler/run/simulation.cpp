@@ -90,6 +90,7 @@ void Simulation::prepare() {
       warnings_.push_back("stages.zero_displacements of '" + stage.name + "': displacements are still counted from the start of the run");
   }
   recorder_.emplace(folder_, scene_, assembly_, grain_weights_);
+  if (scene_.block && dem_) recorder_->block_shape(placed_block(assembly_.grains));
   stepper_.emplace(dem_, continuum_, tie_ ? &*tie_ : nullptr);
   place_probes();
 }
@@ -217,17 +218,21 @@ void Simulation::run_stage(const scene::Stage& stage) {
   stages_.push_back({{"name", stage.name}, {"steps", taken}, {"time", stepper_->time()}, {"unbalanced", unbalanced}, {"dt", dt_}});
 }
 
+PlacedBlock Simulation::placed_block(const GrainSet& grains) const {
+  try {
+    return place_block(*scene_.block, scene_.ground.box, grains);
+  } catch (const std::runtime_error& problem) {
+    throw ScenarioError(problem.what());
+  }
+}
+
 /// Sets the block down on the grains as they lie now.
 void Simulation::release_block() {
   GrainSet present = assembly_.grains;
   const std::vector<double> moved = dem_->fetch("displacement");
   for (std::size_t g = 0; g < present.position.size(); ++g)
     for (int axis = 0; axis < 3; ++axis) present.position[g][axis] += moved[3 * g + static_cast<std::size_t>(axis)];
-  try {
-    block_ = place_block(*scene_.block, scene_.ground.box, present);
-  } catch (const std::runtime_error& problem) {
-    throw ScenarioError(problem.what());
-  }
+  block_ = placed_block(present);
   protocol::Block message;
   std::vector<double> vertices;
   for (const Point& v : block_->vertices) vertices.insert(vertices.end(), v.begin(), v.end());

@@ -52,6 +52,7 @@ class Simulation {
   double choose_step(const scene::Stage& stage);
   double stable_step();
   void set_step(double dt);
+  PlacedBlock placed_block(const GrainSet& grains) const;
   void release_block();
   void watch(const scene::Stage& stage, const Advance& advance);
   nlohmann::json summary() const;

@@ -69,6 +69,10 @@ def overlays(folder, runs):
     for column in columns(runs, "reactions"):
         if column not in ("time", "step") and moves(runs, "reactions", column):
             yield overlay(folder, runs, "reactions", "time", column, f"reaction-{column}", f"Reaction {label(column)}")
+    for run in runs:  # models settle in different times: the block's clock starts at its release
+        for name, values in run.histories.get("block", {}).items():
+            if split_unit(name)[0] == "time":
+                values -= values[0]
     for column, what in (("penetration", "Penetration of the block"), ("force_filtered", "Force on the block")):
         yield overlay(folder, runs, "block", "time", column, f"block-{column}", what)
     strain = next((c for c in columns(runs, "stress") if "axial" in c and "strain" in c), None)

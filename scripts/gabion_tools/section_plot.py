@@ -77,6 +77,9 @@ def section(run, plane=None):
         colours = panel.add_collection(PolyCollection(
             [p for p, _ in polygons], array=np.array([by_node[mesh["elements"][e]].mean() for _, e in polygons]),
             cmap="viridis", clim=(0, largest), edgecolor="0.75", linewidth=0.5))
+        if np.any(grains.get("broken", np.zeros(1)) > 0):  # grains show their bonds: one colour scale is enough
+            colours.set(array=None, facecolor="0.88", edgecolor="0.6")
+            colours = None
         shared = [p for p, e in polygons if weight[e] < 1.0]
         if shared:
             panel.add_collection(PolyCollection(shared, facecolor="none", edgecolor="#d62728", hatch="///",
