@@ -8,6 +8,8 @@
 #include <string>
 #include <tuple>
 
+#include "coupler/ground/loose_grains.hpp"
+
 namespace gabion::coupler {
 
 namespace {
@@ -80,7 +82,24 @@ Packing make_lattice(const scene::Scene& scene) {
   return packing;
 }
 
-std::vector<std::int32_t> select_grains(const Packing& packing, const Zone& zone, bool edge, double reach) {
+namespace {
+
+/// One flag a grain: in the zone, and held there by enough contacts or by the tie.
+std::vector<char> kept_grains(const Packing& packing, const scene::Ground& ground, const Zone& zone, const Cut& cut) {
+  std::vector<char> kept(packing.radius.size(), 1), held(packing.radius.size(), 0);
+  if (!zone.has_interface()) return kept;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const double r = packing.radius[i], beyond = zone.beyond_outer(packing.position[i]);
+    kept[i] = beyond <= (cut.edge ? cut.reach * r : on_plane * r);
+    held[i] = cut.edge ? std::fabs(beyond) < cut.reach * r : cut.slaved && zone.overlap_share(packing.position[i], r) > 0.0;
+  }
+  drop_loose_grains(contact_pairs(packing, ground), held, cut.min_contacts, kept);
+  return kept;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> select_grains(const Packing& packing, const scene::Ground& ground, const Zone& zone, const Cut& cut) {
   struct Key {
     bool interior;
     std::array<int, 3> block;
@@ -88,15 +107,15 @@ std::vector<std::int32_t> select_grains(const Packing& packing, const Zone& zone
   };
   const double block = block_of_diameters * packing.mean_diameter();
   std::vector<Key> keys;
+  const std::vector<char> kept = kept_grains(packing, ground, zone, cut);
   for (std::size_t i = 0; i < packing.position.size(); ++i) {
+    if (!kept[i]) continue;
     const Point& x = packing.position[i];
     const double r = packing.radius[i];
     bool interior = true;
-    if (zone.has_interface()) {
-      const double beyond = zone.beyond_outer(x);
-      if (beyond > (edge ? reach * r : on_plane * r)) continue;
-      interior = edge ? std::fabs(beyond) > std::max(reach, widest_edge_reach) * r : zone.overlap_share(x, r) == 0.0;
-    }
+    if (zone.has_interface())
+      interior = cut.edge ? std::fabs(zone.beyond_outer(x)) > std::max(cut.reach, widest_edge_reach) * r
+                          : zone.overlap_share(x, r) == 0.0;
     Key key{interior, {}, static_cast<std::int32_t>(i)};
     for (int axis = 0; axis < 3; ++axis) key.block[axis] = static_cast<int>(std::floor(x[axis] / block));
     keys.push_back(key);

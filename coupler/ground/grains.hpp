@@ -28,9 +28,18 @@ struct Packing {
 /// periodic direction is not a whole number of cells.
 Packing make_lattice(const scene::Scene& scene);
 
+/// How a zone's faces cut a packing.
+struct Cut {
+  bool edge = false;    ///< edge-to-edge: grains within reach radii beyond a face stay, tied
+  double reach = 0.0;   ///< radii
+  bool slaved = false;  ///< bridging with strict rows: every grain of the overlap is held
+  std::uint32_t min_contacts = 3;
+};
+
 /// Grains of the packing that the model keeps, in an order that puts those near the interface first and
-/// neighbours close together. Indices into the packing.
-std::vector<std::int32_t> select_grains(const Packing& packing, const Zone& zone, bool edge, double reach);
+/// neighbours close together; those that the cut leaves with fewer than min_contacts contacts, and that no tie
+/// holds, go too. Indices into the packing.
+std::vector<std::int32_t> select_grains(const Packing& packing, const scene::Ground& ground, const Zone& zone, const Cut& cut);
 
 /// Index into scene.materials for a grain at x: the last fill that holds it, else the ground's.
 std::int32_t material_at(const scene::Scene& scene, const Point& x);

@@ -41,7 +41,9 @@ Assembly assemble(const scene::Scene& scene, const Packing& packing, const Elast
   if (a.has_mesh) a.mesh = make_mesh(make_grid(scene, a.zone), a.zone);
   if (a.has_grains) {
     a.bond_gap = packing.gap;
-    a.origin = select_grains(packing, a.zone, edge, scene.coupling.reach);
+    a.origin = select_grains(packing, scene.ground, a.zone,
+                             {.edge = edge, .reach = scene.coupling.reach, .slaved = scene.coupling.rows == "strict",
+                              .min_contacts = scene.grains.min_contacts});
     for (const std::int32_t g : a.origin) {
       a.grains.position.push_back(packing.position[g]);
       a.grains.radius.push_back(packing.radius[g]);

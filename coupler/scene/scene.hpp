@@ -88,7 +88,7 @@ struct Coupling {
   std::string solve = "exact";  ///< exact, row_sum
   Sponge sponge;
   double weight_floor = 0.01;
-  double reach = 0.9;            ///< edge: grains within reach * radius of the border plane
+  double reach = 0.9;            ///< edge: grains within reach * radius of the border plane are tied
   double rotation_limit = 0.05;  ///< rad, largest rotation of the interface before the run stops
 };
 

@@ -36,7 +36,7 @@ struct Ground {
           packing.position.push_back({i + 0.3 + 0.4 * unit(random), j + 0.3 + 0.4 * unit(random), k + 0.3 + 0.4 * unit(random)});
           packing.radius.push_back(r);
         }
-    for (const std::int32_t i : coupler::select_grains(packing, g.zone, edge, 1.25)) {
+    for (const std::int32_t i : coupler::select_grains(packing, g.scene.ground, g.zone, {.edge = edge, .reach = 1.25, .min_contacts = 0})) {
       g.grains.position.push_back(packing.position[i]);
       g.grains.radius.push_back(packing.radius[i]);
       g.grains.plain_mass.push_back(4.0 / 3.0 * 3.14159265358979 * std::pow(packing.radius[i], 3));
