@@ -1,5 +1,6 @@
 #include "coupler/run/faces.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gabion::coupler {
@@ -8,41 +9,86 @@ const std::array<const char*, 6> face_names{"xmin", "xmax", "ymin", "ymax", "zmi
 
 namespace {
 
+std::uint8_t bit(int axis) { return static_cast<std::uint8_t>(1 << axis); }
+
 std::uint8_t held_components(int face, const scene::Face& condition) {
   if (condition.kind == "fixed") return 7;
-  if (condition.kind == "roller") return static_cast<std::uint8_t>(1 << (face / 2));
+  if (condition.kind == "roller" || condition.kind == "seat") return bit(face / 2);
   std::uint8_t bits = 0;
   if (condition.kind == "velocity")
     for (int axis = 0; axis < 3; ++axis)
-      if (condition.direction[axis] != 0.0) bits |= static_cast<std::uint8_t>(1 << axis);
+      if (condition.direction[axis] != 0.0) bits |= bit(axis);
   return bits;
+}
+
+/// The two directions along a face.
+std::array<int, 2> tangents(int face) { return {(face / 2 + 1) % 3, (face / 2 + 2) % 3}; }
+
+std::vector<Hold> holds_of(int face, const scene::Face& condition, const std::vector<std::int32_t>& held, const SeatPoints& seat) {
+  std::vector<Hold> holds;
+  const std::string name = face_names[face];
+  if (const std::uint8_t components = held_components(face, condition)) holds.push_back({name, held, components});
+  if (condition.kind != "seat" || seat.middle < 0) return holds;
+  const auto [first, second] = tangents(face);
+  holds.push_back({name + ".seat", {seat.middle}, static_cast<std::uint8_t>(bit(first) | bit(second))});
+  holds.push_back({name + ".across", {seat.across}, bit(second)});
+  return holds;
 }
 
 void put_triple(std::vector<double>& out, double x, double y, double z) { out.insert(out.end(), {x, y, z}); }
 
 }  // namespace
 
-void FaceSide::apply(int face, const scene::Face& condition, const std::vector<std::int32_t>& held, const Patch& patch,
-                     const Elasticity& elasticity) {
+SeatPoints seat_points(int face, const std::vector<std::int32_t>& held, const std::vector<Point>& position, const scene::Box& ground) {
+  const auto [first, second] = tangents(face);
+  const auto nearest = [&](double at_first, double at_second) {
+    std::int32_t best = -1;
+    double least = scene::infinity;
+    for (const std::int32_t e : held) {
+      const Point& x = position[static_cast<std::size_t>(e)];
+      const double square = std::pow(x[first] - at_first, 2) + std::pow(x[second] - at_second, 2);
+      if (square < least) least = square, best = e;
+    }
+    return best;
+  };
+  SeatPoints seat;
+  seat.middle = nearest(0.5 * (ground.lo[first] + ground.hi[first]), 0.5 * (ground.lo[second] + ground.hi[second]));
+  if (seat.middle < 0) return seat;
+  seat.across = nearest(ground.hi[first], position[static_cast<std::size_t>(seat.middle)][second]);
+  return seat.across == seat.middle ? SeatPoints{} : seat;
+}
+
+/// Tells the engine the groups that hold the face now, and empties those that no longer do.
+void FaceSide::hold(int face, const scene::Face& condition, std::vector<Hold> holds) {
+  State& state = faces_[face];
+  std::vector<Hold> told = holds;
+  for (const Hold& before : state.holds) {
+    const auto same = [&](const Hold& now) { return now.name == before.name; };
+    if (std::none_of(holds.begin(), holds.end(), same)) told.push_back({before.name, {}, 0});
+  }
+  for (const Hold& h : told) {
+    protocol::Constrain group;
+    group.name = h.name;
+    group.entities = h.entities;
+    group.components = h.components;
+    const bool moves = condition.kind == "velocity";
+    group.direction = std::vector<double>(condition.direction.begin(), condition.direction.end());
+    group.history_kind = moves ? condition.history.kind : "zero";
+    if (moves) group.history = condition.history.parameters;
+    link_->tell(group);
+  }
+  state.holds = std::move(holds);
+}
+
+void FaceSide::apply(int face, const scene::Face& condition, const std::vector<std::int32_t>& held, const SeatPoints& seat,
+                     const Patch& patch, const Elasticity& elasticity) {
   if (!link_) return;
   State& state = faces_[face];
   const std::string name = face_names[face];
   const int normal = face / 2;
-  const std::uint8_t components = held_components(face, condition);
-  if (condition.kind == "absorbing" && state.components != 0) keep_reactions(face, state.held);
-
-  if (components != 0 || state.components != 0) {
-    protocol::Constrain group;
-    group.name = name;
-    if (components != 0) group.entities = held;
-    group.components = components;
-    group.direction = std::vector<double>(condition.direction.begin(), condition.direction.end());
-    group.history_kind = condition.kind == "velocity" ? condition.history.kind : "zero";
-    if (condition.kind == "velocity") group.history = condition.history.parameters;
-    link_->tell(group);
-    state.held = components != 0 ? held : std::vector<std::int32_t>{};
-    state.components = components;
-  }
+  if (condition.kind == "absorbing")
+    for (const Hold& h : state.holds) keep_reactions(h);
+  hold(face, condition, holds_of(face, condition, held, seat));
 
   const bool loaded = condition.kind == "pressure" || condition.kind == "traction";
   if (loaded || state.loaded) {
@@ -92,25 +138,26 @@ void FaceSide::apply(int face, const scene::Face& condition, const std::vector<s
   std::fill(freedom_.begin(), freedom_.end(), Triple{1, 1, 1});
   std::fill(viscosity_.begin(), viscosity_.end(), Triple{});
   for (const State& s : faces_) {
-    for (const std::int32_t e : s.held)
-      for (int axis = 0; axis < 3; ++axis)
-        if (s.components >> axis & 1) freedom_[e][axis] = 0.0;
+    for (const Hold& h : s.holds)
+      for (const std::int32_t e : h.entities)
+        for (int axis = 0; axis < 3; ++axis)
+          if (h.components & bit(axis)) freedom_[e][axis] = 0.0;
     for (std::size_t k = 0; k < s.absorbing.size(); ++k)
       for (int axis = 0; axis < 3; ++axis) viscosity_[s.absorbing[k]][axis] += s.coefficients[k][axis];
   }
 }
 
-void FaceSide::keep_reactions(int face, const std::vector<std::int32_t>& held) {
+void FaceSide::keep_reactions(const Hold& hold) {
   const std::vector<double> force = link_->fetch("force"), tie = link_->fetch("tie_force");
   protocol::Loads dead;
-  dead.name = std::string(face_names[face]) + ".dead";
-  dead.entities = held;
+  dead.name = hold.name + ".dead";
+  dead.entities = hold.entities;
   dead.history_kind = "constant";
   dead.history = std::vector<double>{1.0};
   std::vector<double> vectors;
-  for (const std::int32_t e : held)
+  for (const std::int32_t e : hold.entities)
     for (int axis = 0; axis < 3; ++axis) {
-      const bool on = faces_[face].components >> axis & 1;
+      const bool on = hold.components & bit(axis);
       vectors.push_back(on ? -(force[3 * static_cast<std::size_t>(e) + axis] + tie[3 * static_cast<std::size_t>(e) + axis]) : 0.0);
     }
   dead.vectors = vectors;
@@ -140,12 +187,16 @@ Faces::Faces(const scene::Scene& scene, const Assembly& assembly, EngineLink* de
       held_nodes_[face] = nodes_at_face(face, assembly.mesh);
       node_patches_[face] = mesh_patch(face, assembly.mesh, assembly.zone);
     }
+    if (held_grains_[face].size() > 1)
+      seat_grains_[face] = seat_points(face, held_grains_[face], assembly.grains.position, scene.ground.box);
+    else
+      seat_nodes_[face] = seat_points(face, held_nodes_[face], assembly.mesh.nodes, scene.ground.box);
   }
 }
 
 void Faces::apply(int face, const scene::Face& condition) {
-  grains_.apply(face, condition, held_grains_[face], grain_patches_[face], assembly_.elasticity);
-  nodes_.apply(face, condition, held_nodes_[face], node_patches_[face], assembly_.elasticity);
+  grains_.apply(face, condition, held_grains_[face], seat_grains_[face], grain_patches_[face], assembly_.elasticity);
+  nodes_.apply(face, condition, held_nodes_[face], seat_nodes_[face], node_patches_[face], assembly_.elasticity);
 }
 
 }  // namespace gabion::coupler

@@ -13,6 +13,20 @@
 
 namespace gabion::coupler {
 
+/// What a face's condition holds: the plate's points, and for a seat the two that stop drift and turning.
+struct Hold {
+  std::string name;
+  std::vector<std::int32_t> entities;
+  std::uint8_t components = 0;  ///< bit per axis
+};
+
+/// Points of a seat: the one nearest to the face's middle is held along both tangents, the one farthest from it along
+/// the first tangent only across. Statically determinate: at rest it carries no force under balanced loads. -1: none.
+struct SeatPoints {
+  std::int32_t middle = -1, across = -1;
+};
+SeatPoints seat_points(int face, const std::vector<std::int32_t>& held, const std::vector<Point>& position, const scene::Box& ground);
+
 /// One engine's share of the faces.
 class FaceSide {
  public:
@@ -21,19 +35,19 @@ class FaceSide {
 
   /// Replaces the condition of a face. held: entities a plate would hold; patch: areas. Where the face was held
   /// before and now absorbs, the reactions of the last step stay on as dead loads.
-  void apply(int face, const scene::Face& condition, const std::vector<std::int32_t>& held, const Patch& patch,
-             const Elasticity& elasticity);
+  void apply(int face, const scene::Face& condition, const std::vector<std::int32_t>& held, const SeatPoints& seat,
+             const Patch& patch, const Elasticity& elasticity);
 
   /// m + c dt/2 and freedom of every point, for the multipliers.
   Inertia inertia(const std::vector<double>& mass, double dt) const;
 
  private:
-  void keep_reactions(int face, const std::vector<std::int32_t>& held);
+  void hold(int face, const scene::Face& condition, std::vector<Hold> holds);
+  void keep_reactions(const Hold& hold);
 
   EngineLink* link_;
   struct State {
-    std::vector<std::int32_t> held;
-    std::uint8_t components = 0;
+    std::vector<Hold> holds;
     std::vector<std::int32_t> absorbing;
     std::vector<Triple> coefficients;
     bool loaded = false;
@@ -54,6 +68,7 @@ class Faces {
   const Assembly& assembly_;
   FaceSide grains_, nodes_;
   std::array<std::vector<std::int32_t>, 6> held_grains_, held_nodes_;
+  std::array<SeatPoints, 6> seat_grains_, seat_nodes_;  ///< in one medium only
   std::array<Patch, 6> grain_patches_, node_patches_;
 };
 

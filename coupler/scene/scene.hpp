@@ -94,7 +94,7 @@ struct Coupling {
 
 /// What holds or drives one face of the ground, in both media.
 struct Face {
-  std::string kind = "free";  ///< free, fixed, roller, absorbing, pressure, traction, velocity
+  std::string kind = "free";  ///< free, fixed, roller, seat, absorbing, pressure, traction, velocity
   History history;            ///< pressure Pa (compression positive), traction Pa, velocity m/s
   Point direction{};          ///< traction and velocity: unit vector; velocity: only its nonzero components are held
 };

@@ -66,7 +66,7 @@ TEST_CASE("unknown, missing and mistyped keys") {
       {{"grains.seed=1.5"}, "grains.seed", "1.5, expected a whole number"},
       {{"grains.seed=-1"}, "grains.seed", "-1, expected at least 0"},
       {{"run.measure_energy=maybe"}, "run.measure_energy", "'maybe', expected true or false"},
-      {{"faces.zmin=5"}, "faces.zmin", "5, expected one of free, fixed, roller, absorbing, or an object with pressure"},
+      {{"faces.zmin=5"}, "faces.zmin", "5, expected one of free, fixed, roller, seat, absorbing, or an object with pressure"},
       {{"gabion=2"}, "gabion", "2, expected 1"},
   });
 }
