@@ -15,6 +15,7 @@ NEEDED = {
     "libeigen3-dev": "linear algebra",
     "nlohmann-json3-dev": "scenes, summaries",
     "libcli11-dev": "command lines",
+    "libvalijson-dev": "schema of the scenes",
     "libhdf5-dev": "results",
     "zlib1g-dev": "checksums",
     "catch2": "tests",
