@@ -61,6 +61,7 @@ double contact_share(const Grains& grains, std::size_t i, std::size_t j, double 
 }
 
 double contact_weight(const ContactSource& source, std::size_t i, std::size_t j, Vec branch) {
+  if (source.weights.border()) return source.weights.share_of_line(source.rest[i], branch);
   if (source.weights.width <= 0.0) return 1.0;
   const double share = contact_share(source.grains, i, j, norm(branch));
   return source.weights.at(source.rest[i] + splat(share) * branch);

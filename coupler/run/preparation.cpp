@@ -106,7 +106,7 @@ protocol::ContactOptions contact_options(const scene::Scene& scene) {
 }
 
 void send_weights(const Assembly& assembly, EngineLink& link) {
-  if (!assembly.coupled() || assembly.zone.overlap() <= 0.0) return;
+  if (!assembly.coupled()) return;
   protocol::Weights weights;
   weights.outer_lo = flatten(assembly.zone.outer().lo);
   weights.outer_hi = flatten(assembly.zone.outer().hi);
@@ -268,7 +268,7 @@ protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, Eng
   grains.radius = assembly.grains.radius;
   grains.material = assembly.material;
   dem.tell(grains);
-  send_weights(assembly, dem);
+  if (assembly.zone.overlap() > 0.0 || scene.coupling.border_weights) send_weights(assembly, dem);
   protocol::Bonds bonds;
   bonds.gap = assembly.bond_gap;
   dem.ask<protocol::Bonded>(bonds);
@@ -294,7 +294,7 @@ protocol::Ready configure_continuum(const scene::Scene& scene, const Assembly& a
   mesh.wrap.set_shape(std::array<std::uint64_t, 2>{assembly.mesh.wrap.size(), 8});
   mesh.material = std::vector<std::int32_t>(assembly.mesh.elements.size(), 0);
   continuum.tell(mesh);
-  send_weights(assembly, continuum);
+  if (assembly.zone.overlap() > 0.0) send_weights(assembly, continuum);
   return continuum.ask<protocol::Ready>(protocol::Prepare{});
 }
 
@@ -372,7 +372,7 @@ void start_motion(const scene::Scene& scene, const Assembly& assembly, double dt
   dem->tell(turned);
 }
 
-void trim_gravity(const scene::Scene& scene, const Assembly& assembly, EngineLink& dem) {
+void trim_gravity(const scene::Scene& scene, const Assembly& assembly, const std::vector<double>& grain_weights, EngineLink& dem) {
   protocol::Loads loads;
   loads.name = "border gravity";
   loads.history_kind = "constant";
@@ -380,10 +380,11 @@ void trim_gravity(const scene::Scene& scene, const Assembly& assembly, EngineLin
   std::vector<double> vectors;
   for (std::size_t i = 0; i < assembly.grains.position.size(); ++i) {
     const double beyond = assembly.zone.beyond_outer(assembly.grains.position[i]);  // share by planes, as q_i
-    const double outside = std::clamp(0.5 + beyond / (2.0 * assembly.grains.radius[i]), 0.0, 1.0);
-    if (outside <= 0.0) continue;
+    const double inside = std::clamp(0.5 - beyond / (2.0 * assembly.grains.radius[i]), 0.0, 1.0);
+    const double missing = inside - grain_weights[i];  // the engine weighs the grain with its weighted mass
+    if (missing == 0.0) continue;
     loads.entities.data.push_back(static_cast<std::int32_t>(i));
-    for (int axis = 0; axis < 3; ++axis) vectors.push_back(-outside * assembly.grains.plain_mass[i] * scene.gravity[axis]);
+    for (int axis = 0; axis < 3; ++axis) vectors.push_back(missing * assembly.grains.plain_mass[i] * scene.gravity[axis]);
   }
   loads.entities.set_shape(std::array<std::uint64_t, 1>{loads.entities.size()});
   loads.vectors = vectors;

@@ -38,7 +38,7 @@ protocol::Ready configure_continuum(const scene::Scene& scene, const Assembly& a
 /// Puts the scene's initial motion and wave packet into velocity (at -dt/2) and displacement of both engines.
 void start_motion(const scene::Scene& scene, const Assembly& assembly, double dt, EngineLink* dem, EngineLink* continuum);
 
-/// Edge-to-edge: gravity of the part of each border grain that lies on the continuum's side is taken off again.
-void trim_gravity(const scene::Scene& scene, const Assembly& assembly, EngineLink& dem);
+/// Edge-to-edge: each grain at the border feels the gravity of its part on the grains' side, whatever its weight.
+void trim_gravity(const scene::Scene& scene, const Assembly& assembly, const std::vector<double>& grain_weights, EngineLink& dem);
 
 }  // namespace gabion::coupler

@@ -83,7 +83,7 @@ void Simulation::prepare() {
     }
   }
   const bool gravity = scene_.gravity != scene::Point{};
-  if (gravity && dem_ && continuum_ && scene_.model == scene::Model::edge) trim_gravity(scene_, assembly_, *dem_);
+  if (gravity && dem_ && continuum_ && scene_.model == scene::Model::edge) trim_gravity(scene_, assembly_, grain_weights_, *dem_);
   for (const scene::Stage& stage : scene_.stages) {
     if (!stage.gravity) throw ScenarioError("stages.gravity: false is not supported in stage '" + stage.name + "'; leave it out, or set gravity to 0 for the whole scene");
     if (stage.zero_displacements)

@@ -96,15 +96,17 @@ Mesh mesh(const Json& m) {
 /// another, and a thin one too soft, for contacts across the border are lost; where both cancel depends on how much the
 /// grains move against one another, hence on k_s/k_n. Measured on random packings of 5.7 contacts per grain
 /// (docs/decisions.md, "Reach of the edge tie"). On a lattice the planes decide.
-double default_reach(const std::string& rows, const Grains& grains, const Material* soil) {
-  if (rows == "edge_hats") return 1.25;
-  if (rows != "edge" || grains.packing != "random" || !soil || !(soil->shear_stiffness > 0.0)) return 0.9;
-  return std::clamp(0.885 + 0.085 * std::log(soil->shear_stiffness / soil->normal_stiffness), 0.65, 0.9);
+double default_reach(const Coupling& coupling, const Grains& grains, const Material* soil) {
+  if (coupling.rows == "edge_hats") return 1.25;
+  const double whole = coupling.border_weights ? 1.15 : 0.9;
+  if (coupling.rows != "edge" || grains.packing != "random" || !soil || !(soil->shear_stiffness > 0.0)) return whole;
+  const double ratio = std::log(soil->shear_stiffness / soil->normal_stiffness);
+  return coupling.border_weights ? std::clamp(1.30 + 0.20 * ratio, 0.75, 1.3) : std::clamp(0.885 + 0.085 * ratio, 0.65, 0.9);
 }
 
 Coupling coupling(Json& values, double element_size, const Grains& grains, const Material* soil) {
   Json& c = values["coupling"];
-  if (!c.contains("reach")) c["reach"] = default_reach(c["rows"], grains, soil);
+  if (!c.contains("border_weights")) c["border_weights"] = c["rows"] == "edge";
   constexpr double default_elements = 4.0;
   if (values["model"] == "bridging" && !c.contains("overlap")) c["overlap"] = default_elements * element_size;
   Coupling result{.overlap = c.value("overlap", 0.0),
@@ -112,8 +114,10 @@ Coupling coupling(Json& values, double element_size, const Grains& grains, const
                   .solve = c["solve"],
                   .sponge = {},
                   .weight_floor = c["weight_floor"],
-                  .reach = c["reach"],
+                  .border_weights = values["model"] == "edge" && c["border_weights"],
                   .rotation_limit = c["rotation_limit"]};
+  if (!c.contains("reach")) c["reach"] = default_reach(result, grains, soil);
+  result.reach = c["reach"];
   if (c.contains("sponge")) result.sponge.strength = c["sponge"]["strength"];
   return result;
 }

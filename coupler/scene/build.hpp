@@ -7,7 +7,7 @@
 namespace gabion::scene {
 
 /// Values that follow from others are filled in and written back, so that the effective scene shows them:
-/// overlap, reach, at_least of the stages, stage of the block.
+/// overlap, border_weights, reach, at_least of the stages, stage of the block.
 Scene build_scene(Json& values, const std::string& name);
 
 }  // namespace gabion::scene

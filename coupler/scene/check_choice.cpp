@@ -50,6 +50,9 @@ void check_coupling(Checker& check) {
   if (coupling.solve == "row_sum" && coupling.rows != "strict")
     check.error(check.coupling_path("solve"), "exact, unless rows = strict",
                 "row_sum is the explicit form of the strict rows only; use solve = exact");
+  if (coupling.border_weights && coupling.rows == "edge_hats")
+    check.error(check.coupling_path("border_weights"), "false with rows = edge_hats",
+                "hats hold only mean motion: grains whose contacts count little would hang loose; leave it out");
   if (coupling.rows == "edge_projected")
     check.warn(check.coupling_path("rows"), "edge",
                "a rotating body is turned round by edge_projected; use it only to reproduce the original method");

@@ -33,12 +33,38 @@ struct RequestError : std::runtime_error {
   std::string where, advice;
 };
 
-/// Bridging weights: w(X) = clamp(min over finite faces of (distance inward from the outer face)/width, floor, 1).
+/// Weights of grains where a continuum stands for them too.
+/// Bridging, width above 0: w(X) = clamp(min over finite faces of (distance inward from the outer face)/width, floor, 1).
+/// Border, width 0 and a finite face: w of a contact is the share of its branch inside the outer box, at least floor.
 struct WeightField {
   Vec outer_lo = vec(-INFINITY, -INFINITY, -INFINITY);
   Vec outer_hi = vec(INFINITY, INFINITY, INFINITY);
-  double width = 0.0;  ///< m; 0: weight 1 everywhere
+  double width = 0.0;  ///< m
   double floor = 0.0;
+
+  bool border() const {
+    bool finite = false;
+    for (int axis = 0; axis < 3; ++axis) finite = finite || std::isfinite(outer_lo[axis]) || std::isfinite(outer_hi[axis]);
+    return width <= 0.0 && finite;
+  }
+
+  /// Share of the line from x to x + branch inside the outer box, at least floor. A line in a face counts half.
+  double share_of_line(Vec x, Vec branch) const {
+    const double hair = 1e-6 * (std::fabs(branch[0]) + std::fabs(branch[1]) + std::fabs(branch[2]));
+    double from = 0.0, to = 1.0, in_face = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double lo = outer_lo[axis] - x[axis], hi = outer_hi[axis] - x[axis], b = branch[axis];
+      if (std::fabs(b) < hair) {
+        const double inside = std::fmin(-lo, hi);
+        if (inside < -hair) return floor;
+        if (inside <= hair) in_face *= 0.5;
+        continue;
+      }
+      from = std::fmax(from, std::fmin(lo / b, hi / b));
+      to = std::fmin(to, std::fmax(lo / b, hi / b));
+    }
+    return std::fmax(floor, in_face * (to - from));
+  }
 
   double at(Vec x) const {
     if (width <= 0.0) return 1.0;

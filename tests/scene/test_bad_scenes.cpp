@@ -121,7 +121,7 @@ TEST_CASE("values out of range") {
       {{"run.step_fraction=0"}, "run.step_fraction", "above 0"},
       {{"coupling.weight_floor=0.6"}, "coupling.weight_floor", "expected above 0 and at most 0.5"},
       {{"coupling.weight_floor=0"}, "coupling.weight_floor", "expected above 0"},
-      {{"coupling.reach=0"}, "coupling.reach", "0.7 to 0.9 for edge"},
+      {{"coupling.reach=0"}, "coupling.reach", "0.8 to 1.3 for edge"},
       {{"mesh.grading=0.5"}, "mesh.grading", "at least 1"},
       {{"stages[0].duration=-1 ms"}, "stages[0].duration", "expected above 0 s"},
       {{"stages[0].until={\"unbalanced\": 0}"}, "stages[0].until.unbalanced", "above 0"},
