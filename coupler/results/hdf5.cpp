@@ -83,6 +83,31 @@ Handle group(hid_t parent, const std::string& path) {
   return {H5Gcreate2(parent, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "create group " + path};
 }
 
+Handle open_file(const std::filesystem::path& path) {
+  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open " + path.string()};
+}
+
+bool exists(hid_t parent, const std::string& path) {
+  for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+    if (H5Lexists(parent, path.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
+    if (end == std::string::npos) return true;
+  }
+}
+
+Values read(hid_t parent, const std::string& path) {
+  if (!exists(parent, path)) throw ResultsError("there is no " + path);
+  const Handle dataset(H5Dopen2(parent, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path);
+  const Handle space(H5Dget_space(dataset), H5Sclose, "extent of " + path);
+  Values values;
+  values.extent.resize(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)));
+  H5Sget_simple_extent_dims(space, values.extent.data(), nullptr);
+  std::size_t count = 1;
+  for (const hsize_t n : values.extent) count *= static_cast<std::size_t>(n);
+  values.data.resize(count);
+  check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data.data()), "read " + path);
+  return values;
+}
+
 void write(hid_t parent, const std::string& name, std::span<const double> values, const Extent& extent) {
   write_raw(parent, name, values.data(), values.size(), extent, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE);
 }

@@ -50,6 +50,17 @@ Handle create_file(const std::filesystem::path& path);
 /// With its parents, kept if it is there.
 Handle group(hid_t parent, const std::string& path);
 
+/// An existing file, for reading.
+Handle open_file(const std::filesystem::path& path);
+/// A whole dataset as doubles, whatever its number type, and its extent. Throws ResultsError when it is not there.
+struct Values {
+  std::vector<double> data;
+  std::vector<hsize_t> extent;
+};
+Values read(hid_t parent, const std::string& path);
+/// Whether the path, all of its groups included, exists.
+bool exists(hid_t parent, const std::string& path);
+
 using Extent = std::vector<hsize_t>;
 
 void write(hid_t parent, const std::string& name, std::span<const double> values, const Extent& extent);

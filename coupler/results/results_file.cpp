@@ -75,13 +75,14 @@ struct ResultsFile::Content {
   XdmfFile xdmf;
   Part grains{"grains", {}, {}, {}, {}, true}, mesh{"mesh", {}, {}, {}, {}, true};
   Part interface{"interface", {}, {}, {}, {}, false}, block{"block", {}, {}, {}, {}, false};
+  Part contacts{"contacts", {}, {}, {}, {}, false};
   std::uint64_t row_count = 0, corner_count = 0, own_nodes = 0;
   std::vector<std::int64_t> node_source;
   std::vector<double> times;
   std::uint64_t step_number = 0;
   bool in_state = false;
 
-  std::array<Part*, 4> parts() { return {&grains, &mesh, &interface, &block}; }
+  std::array<Part*, 5> parts() { return {&grains, &mesh, &interface, &block, &contacts}; }
 
   Part& create(Part& part) {
     if (part.present()) throw ResultsError("results: the geometry of " + part.name + " was written before");
@@ -241,6 +242,28 @@ void ResultsFile::cell_field(const std::string& name, std::span<const double> va
 void ResultsFile::interface_field(const std::string& name, std::span<const double> values, int components,
                                   const std::string& unit) {
   content_->field(content_->interface, name, values, components, unit, content_->row_count, false);
+}
+
+void ResultsFile::contacts(std::span<const double> rows) {
+  Content& c = *content_;
+  if (!c.in_state) throw ResultsError("results: contacts outside begin_state, end_state");
+  constexpr std::size_t width = 8;
+  if (rows.size() % width != 0) throw ResultsError("results: contacts have " + std::to_string(rows.size()) + " values, not a multiple of 8");
+  const std::size_t count = rows.size() / width;
+  std::vector<std::int32_t> grains;
+  std::vector<double> normal, force;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double* row = &rows[width * k];
+    grains.insert(grains.end(), {static_cast<std::int32_t>(row[0]), static_cast<std::int32_t>(row[1])});
+    normal.insert(normal.end(), row + 2, row + 5);
+    force.insert(force.end(), row + 5, row + 8);
+  }
+  if (!c.contacts.group.open()) c.contacts.group = hdf5::group(c.file, c.contacts.name);
+  c.contacts.state = hdf5::group(c.contacts.group, state_name(c.times.size() - 1));
+  hdf5::write(c.contacts.state, "grains", grains, {count, 2});
+  hdf5::write(c.contacts.state, "normal", normal, {count, 3});
+  hdf5::write(c.contacts.state, "force", force, {count, 3});
+  hdf5::attribute(c.contacts.state, "force", "unit", std::string("N"));
 }
 
 void ResultsFile::block_vertices(std::span<const double> vertices) {

@@ -77,6 +77,9 @@ class ResultsFile {
   /// n is the number of constraint rows: jump, multiplier_force ...
   void interface_field(const std::string& name, std::span<const double> values, int components,
                        const std::string& unit = "");
+  /// Contacts of this state, [m][8] as the grain engine's field "contact": grain, grain, normal (3), force on the
+  /// second (3, N, weight included). Goes to /contacts/state_..., which is not drawn.
+  void contacts(std::span<const double> rows);
   /// Present corners [n][3], m.
   void block_vertices(std::span<const double> vertices);
   void end_state();

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <zlib.h>
 
+#include "coupler/results/earlier_state.hpp"
 #include "protocol/engine/hash.hpp"
 
 namespace gabion::coupler {
@@ -337,17 +338,20 @@ Start motion_start(const scene::Scene& scene) {
   };
 }
 
-void put(EngineLink* link, const std::vector<Point>& points, Start start, const char* name_u, const char* name_v) {
+void put_field(EngineLink& link, const char* name, const std::vector<double>& values) {
+  protocol::SetField field;
+  field.field = name;
+  field.values.set_shape(std::array<std::uint64_t, 2>{values.size() / 3, 3});
+  field.values.data = values;
+  link.tell(field);
+}
+
+void put(EngineLink* link, const std::vector<Point>& points, Start start) {
   if (!link) return;
   std::vector<double> displacement(3 * points.size(), 0.0), velocity(3 * points.size(), 0.0);
   for (std::size_t i = 0; i < points.size(); ++i) start(points[i], &displacement[3 * i], &velocity[3 * i]);
-  for (const auto& [name, values] : {std::pair{name_u, &displacement}, std::pair{name_v, &velocity}}) {
-    protocol::SetField field;
-    field.field = name;
-    field.values.set_shape(std::array<std::uint64_t, 2>{points.size(), 3});
-    field.values.data = *values;
-    link->tell(field);
-  }
+  put_field(*link, "displacement", displacement);
+  put_field(*link, "velocity", velocity);
 }
 
 }  // namespace
@@ -360,16 +364,18 @@ void start_motion(const scene::Scene& scene, const Assembly& assembly, double dt
   const Start all = [&](const Point& x, double* u, double* v) {
     for (Start& start : starts) start(x, u, v);
   };
-  put(dem, assembly.grains.position, all, "displacement", "velocity");
-  put(continuum, assembly.mesh.nodes, all, "displacement", "velocity");
-  if (!dem || !scene.grains.rotations) return;
-  // grains turn with the rigid rotation
-  protocol::SetField turned;
-  turned.field = "rotation";
-  turned.values.set_shape(std::array<std::uint64_t, 2>{assembly.grains.position.size(), 3});
+  put(dem, assembly.grains.position, all);
+  put(continuum, assembly.mesh.nodes, all);
+  if (!dem) return;
+  std::vector<double> turned;  // grains turn with the rigid rotation
   for (std::size_t i = 0; i < assembly.grains.position.size(); ++i)
-    turned.values.data.insert(turned.values.data.end(), scene.initial.rotation.begin(), scene.initial.rotation.end());
-  dem->tell(turned);
+    turned.insert(turned.end(), scene.initial.rotation.begin(), scene.initial.rotation.end());
+  if (!scene.initial.state.empty()) {
+    EarlierState earlier = read_earlier_state(scene.initial.state, assembly.origin);
+    put_field(*dem, "displacement", earlier.displacement);
+    if (!earlier.rotation.empty()) turned = std::move(earlier.rotation);
+  }
+  if (scene.grains.rotations) put_field(*dem, "rotation", turned);
 }
 
 void trim_gravity(const scene::Scene& scene, const Assembly& assembly, const std::vector<double>& grain_weights, EngineLink& dem) {

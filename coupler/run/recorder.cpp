@@ -19,9 +19,23 @@ struct FieldOf {
   int components;
   const char* unit;
 };
-constexpr FieldOf grain_fields[] = {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}, {"spin", 3, "rad/s"}, {"broken", 1, ""}};
-constexpr FieldOf node_fields[] = {{"displacement", 3, "m"}, {"velocity", 3, "m/s"}};
+constexpr FieldOf grain_fields[] = {{"velocity", 3, "m/s"}, {"spin", 3, "rad/s"}, {"broken", 1, ""}};
+constexpr FieldOf node_fields[] = {{"velocity", 3, "m/s"}};
 constexpr FieldOf cell_fields[] = {{"stress", 6, "Pa"}};
+
+std::vector<double> less(std::vector<double> values, const std::vector<double>& taken) {
+  for (std::size_t k = 0; k < taken.size(); ++k) values[k] -= taken[k];
+  return values;
+}
+
+/// Sum of a sparse row times a field of points, three components.
+Point row_times(const SparseRows& rows, std::size_t r, const std::vector<double>& field) {
+  Point sum{};
+  for (std::int32_t k = rows.row_ptr[r]; k < rows.row_ptr[r + 1]; ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      sum[axis] += rows.values[static_cast<std::size_t>(k)] * field[3 * static_cast<std::size_t>(rows.columns[static_cast<std::size_t>(k)]) + axis];
+  return sum;
+}
 
 }  // namespace
 
@@ -118,18 +132,23 @@ void Recorder::probe_rows(double time, std::uint64_t step, double dt, const Adva
     std::vector<double> row{time - (static_cast<double>(step) - reference->probe_steps[s]) * dt};
     const auto take = [&](const std::optional<protocol::RunDone>& report, const std::vector<std::string>& names) {
       if (!report) return;
-      for (std::size_t p = 0; p < names.size(); ++p) {
-        auto& figure = probe_figures_[names[p]];
-        for (int axis = 0; axis < 3; ++axis) {
-          const double value = report->probes[(s * names.size() + p) * 3 + static_cast<std::size_t>(axis)];
-          row.push_back(value);
-          if (std::fabs(value) > std::fabs(figure[axis])) figure[axis] = value;
-          if (axis == 2) figure[3] = value;
-        }
-      }
+      for (std::size_t p = 0; p < 3 * names.size(); ++p) row.push_back(report->probes[s * 3 * names.size() + p]);
     };
     take(advance.dem, dem_probes_);
     take(advance.continuum, continuum_probes_);
+    const std::size_t columns = row.size() - 1;
+    if (zeroed_probes_.empty()) zeroed_probes_.assign(columns, 0.0);
+    if (zero_probes_) zeroed_probes_.assign(row.begin() + 1, row.end());
+    zero_probes_ = false;
+    for (std::size_t k = 0; k < columns; ++k) {
+      const double value = row[k + 1] -= zeroed_probes_[k];
+      const std::size_t probe = k / 3, axis = k % 3;
+      auto& figure = probe_figures_[probe < dem_probes_.size() ? dem_probes_[probe] : continuum_probes_[probe - dem_probes_.size()]];
+      if (std::fabs(value) > std::fabs(figure[axis])) figure[axis] = value;
+      if (axis == 2) figure[3] = value;
+    }
+    if (row[0] < next_probe_ - 0.5 * dt) continue;
+    next_probe_ += scene_.output.probe_every;
     probes_->append(row);
   }
 }
@@ -182,16 +201,84 @@ void Recorder::state(const std::string& stage, std::uint64_t step, double time, 
                      EngineLink* continuum, const InterfaceTie* tie) {
   last_state_step_ = step;
   results_.begin_state(time, step, stage);
-  if (dem)
+  std::vector<double> u_grains, u_nodes;
+  if (dem) {
+    u_grains = dem->fetch("displacement");
+    results_.grain_field("displacement", less(u_grains, zeroed_grains_), 3, "m");
+    if (!zeroed_grains_.empty()) results_.grain_field("zeroed_displacement", zeroed_grains_, 3, "m");
     for (const FieldOf& f : grain_fields) results_.grain_field(f.name, dem->fetch(f.name), f.components, f.unit);
+    if (wants("rotation")) results_.grain_field("rotation", dem->fetch("rotation"), 3, "rad");
+    if (wants("contact_force")) results_.contacts(dem->fetch("contact"));
+  }
   if (continuum) {
+    u_nodes = continuum->fetch("displacement");
+    results_.node_field("displacement", less(u_nodes, zeroed_nodes_), 3, "m");
+    if (!zeroed_nodes_.empty()) results_.node_field("zeroed_displacement", zeroed_nodes_, 3, "m");
     for (const FieldOf& f : node_fields) results_.node_field(f.name, continuum->fetch(f.name), f.components, f.unit);
     for (const FieldOf& f : cell_fields) results_.cell_field(f.name, continuum->fetch(f.name), f.components, f.unit);
+    if (wants("strain")) results_.cell_field("strain", continuum->fetch("strain"), 6, "");
   }
+  if (tie) interface_fields(dt, *continuum, *tie, u_grains, u_nodes);
   if (!block_vertices_.empty()) results_.block_vertices(block_vertices_);
-  (void)tie;
-  (void)dt;
   results_.end_state();
+}
+
+bool Recorder::wants(const char* field) const {
+  return std::find(scene_.output.fields.begin(), scene_.output.fields.end(), field) != scene_.output.fields.end();
+}
+
+/// Per row of the tie: gap rows say it directly; for slaved grains the tie's force on the node, and the mean of what
+/// the grains that lean on it are ahead of the mesh.
+void Recorder::interface_fields(double dt, EngineLink& continuum, const InterfaceTie& tie, const std::vector<double>& u_grains,
+                                const std::vector<double>& u_nodes) {
+  const InterfaceRows& rows = tie.rows();
+  const bool gap = rows.kind == InterfaceRows::Kind::gap;
+  if (wants("multiplier")) {
+    std::vector<double> force(3 * rows.slots, 0.0);
+    if (gap) {
+      const std::span<const double> impulse = tie.last_answer();
+      for (std::size_t k = 0; k < force.size(); ++k) force[k] = impulse[k] / dt;
+    } else {
+      const std::vector<double> on_nodes = continuum.fetch("tie_force");
+      for (std::size_t r = 0; r < rows.slots; ++r)
+        for (std::size_t axis = 0; axis < 3; ++axis) force[3 * r + axis] = -on_nodes[3 * static_cast<std::size_t>(rows.tied_nodes[r]) + axis];
+    }
+    results_.interface_field("multiplier_force", force, 3, "N");
+  }
+  if (!wants("jump")) return;
+  std::vector<double> jump(3 * rows.slots, 0.0), weight(rows.slots, 0.0);
+  if (gap) {
+    for (std::size_t r = 0; r < rows.slots; ++r) {
+      const Point grains = row_times(rows.grains, r, u_grains), nodes = row_times(rows.nodes, r, u_nodes);
+      for (std::size_t axis = 0; axis < 3; ++axis) jump[3 * r + axis] = -(grains[axis] + nodes[axis]);
+    }
+  } else {
+    std::vector<double> u_slots(3 * rows.slots);
+    for (std::size_t r = 0; r < rows.slots; ++r)
+      for (std::size_t axis = 0; axis < 3; ++axis) u_slots[3 * r + axis] = u_nodes[3 * static_cast<std::size_t>(rows.tied_nodes[r]) + axis];
+    for (std::size_t t = 0; t < rows.tied_grains.size(); ++t) {
+      const Point mesh = row_times(rows.grains, t, u_slots);
+      for (std::int32_t k = rows.grains.row_ptr[t]; k < rows.grains.row_ptr[t + 1]; ++k) {
+        const auto slot = static_cast<std::size_t>(rows.grains.columns[static_cast<std::size_t>(k)]);
+        const double share = std::fabs(rows.grains.values[static_cast<std::size_t>(k)]);
+        weight[slot] += share;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          jump[3 * slot + axis] += share * (u_grains[3 * static_cast<std::size_t>(rows.tied_grains[t]) + axis] - mesh[axis]);
+      }
+    }
+    for (std::size_t r = 0; r < rows.slots; ++r)
+      for (std::size_t axis = 0; axis < 3; ++axis) jump[3 * r + axis] /= weight[r];
+  }
+  results_.interface_field("jump", jump, 3, "m");
+}
+
+void Recorder::interface_geometry(const InterfaceTie& tie) { results_.write_interface_geometry(flat(tie.rows().slot_position)); }
+
+void Recorder::zero_displacements(EngineLink* dem, EngineLink* continuum) {
+  if (dem) zeroed_grains_ = dem->fetch("displacement");
+  if (continuum) zeroed_nodes_ = continuum->fetch("displacement");
+  zero_probes_ = true;
+  probe_figures_.clear();
 }
 
 nlohmann::json Recorder::figures() const {

@@ -32,6 +32,8 @@ class Recorder {
   void state(const std::string& stage, std::uint64_t step, double time, double dt, EngineLink* dem,
              EngineLink* continuum, const InterfaceTie* tie);
 
+  /// Where the rows of the tie act, before the first state.
+  void interface_geometry(const InterfaceTie& tie);
   /// The block's shape, before the first state; where it is goes with each state.
   void block_shape(const PlacedBlock& block);
   /// A row of block.csv. state: field "block" of the engine.
@@ -40,6 +42,8 @@ class Recorder {
   std::uint64_t last_state_step() const { return last_state_step_; }
 
   void start_stage() { energy_.start_stage(); }
+  /// From now on displacements of states and probes are counted from what they are at this moment.
+  void zero_displacements(EngineLink* dem, EngineLink* continuum);
   const EnergyBalance& energy() const { return energy_; }
   /// Largest displacement component of each probe over the run, m, and its last value.
   nlohmann::json figures() const;
@@ -48,6 +52,9 @@ class Recorder {
  private:
   void probe_rows(double time, std::uint64_t step, double dt, const Advance& advance);
   void reaction_row(double time, const Advance& advance);
+  void interface_fields(double dt, EngineLink& continuum, const InterfaceTie& tie, const std::vector<double>& u_grains,
+                        const std::vector<double>& u_nodes);
+  bool wants(const char* field) const;
 
   RunFolder& folder_;
   const scene::Scene& scene_;
@@ -57,6 +64,10 @@ class Recorder {
   std::unique_ptr<History> monitor_, energy_rows_, probes_, reactions_, counters_, block_;
   std::vector<std::string> dem_probes_, continuum_probes_;
   std::uint64_t last_state_step_ = 0;
+  std::vector<double> zeroed_grains_, zeroed_nodes_;        ///< displacements at the last zeroing, m; empty: none
+  std::vector<double> zeroed_probes_;                        ///< in the order of the columns
+  bool zero_probes_ = false;                                 ///< the next sample becomes the zero
+  double next_probe_ = 0.0;
   std::vector<double> block_vertices_;  ///< present corners, m; before its release where it would touch the grains
   std::map<std::string, std::array<double, 4>> probe_figures_;  ///< largest |component| 3, last z
 };

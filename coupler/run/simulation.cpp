@@ -86,10 +86,9 @@ void Simulation::prepare() {
   if (gravity && dem_ && continuum_ && scene_.model == scene::Model::edge) trim_gravity(scene_, assembly_, grain_weights_, *dem_);
   for (const scene::Stage& stage : scene_.stages) {
     if (!stage.gravity) throw ScenarioError("stages.gravity: false is not supported in stage '" + stage.name + "'; leave it out, or set gravity to 0 for the whole scene");
-    if (stage.zero_displacements)
-      warnings_.push_back("stages.zero_displacements of '" + stage.name + "': displacements are still counted from the start of the run");
   }
   recorder_.emplace(folder_, scene_, assembly_, grain_weights_);
+  if (tie_) recorder_->interface_geometry(*tie_);
   if (scene_.block && dem_) recorder_->block_shape(placed_block(assembly_.grains));
   stepper_.emplace(dem_, continuum_, tie_ ? &*tie_ : nullptr);
   place_probes();
@@ -162,6 +161,8 @@ void Simulation::run_stage(const scene::Stage& stage) {
   }
   if (scene_.block && &stage == &scene_.stages[static_cast<std::size_t>(scene_.block->stage)]) release_block();
 
+  if (stage.zero_displacements) recorder_->zero_displacements(dem_, continuum_);
+
   double dt = choose_step(stage);
   // ends at the first of duration, steps and until; at_least holds for until alone
   std::uint64_t most = stage.steps > 0 ? stage.steps : stage.max_steps;
@@ -175,7 +176,12 @@ void Simulation::run_stage(const scene::Stage& stage) {
   const auto least = static_cast<std::uint64_t>(std::ceil(stage.at_least / dt));
   set_step(dt);
   if (first) {
-    start_motion(scene_, assembly_, dt, dem_, continuum_);
+    try {
+      start_motion(scene_, assembly_, dt, dem_, continuum_);
+    } catch (const std::runtime_error& problem) {
+      if (scene_.initial.state.empty()) throw;
+      throw ScenarioError(problem.what());
+    }
     recorder_->state(stage.name, 0, 0.0, dt, dem_, continuum_, tie_ ? &*tie_ : nullptr);
     next_output_ = scene_.output.every;
   }

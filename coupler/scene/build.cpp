@@ -233,6 +233,7 @@ InitialMotion initial_motion(const Json& i) {
   motion.velocity = point(i["velocity"]);
   motion.noise = i["noise"];
   motion.noise_seed = i["noise_seed"];
+  motion.state = i.value("state", "");
   return motion;
 }
 
@@ -260,7 +261,7 @@ bool InitialMotion::any() const {
   const auto nonzero = [](double value) { return value != 0.0; };
   return std::any_of(strain.begin(), strain.end(), nonzero) || std::any_of(rotation.begin(), rotation.end(), nonzero) ||
          std::any_of(translation.begin(), translation.end(), nonzero) ||
-         std::any_of(velocity.begin(), velocity.end(), nonzero) || noise != 0.0;
+         std::any_of(velocity.begin(), velocity.end(), nonzero) || noise != 0.0 || !state.empty();
 }
 
 Scene build_scene(Json& v, const std::string& name) {

@@ -31,6 +31,18 @@ std::string hexadecimal(std::uint64_t number) {
   return text;
 }
 
+/// A path in the scene counts from the scene's folder.
+void resolve_paths(Json& values, const std::filesystem::path& folder, std::vector<SceneProblem>& problems) {
+  if (!values["initial"].contains("state")) return;
+  Json& path = values["initial"]["state"];
+  const std::filesystem::path resolved = folder / path.get<std::string>();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(resolved, error))
+    problems.push_back({"initial.state", quoted(path.get<std::string>()), "the results.h5 of an earlier run",
+                        "there is no file " + resolved.string()});
+  path = resolved.string();
+}
+
 void stop_at(const std::string& file, const std::vector<SceneProblem>& problems) {
   if (!problems.empty()) throw SceneError(file, problems);
 }
@@ -59,6 +71,8 @@ ReadResult read_scene_text(const std::string& text, const std::string& label, co
   stop_at(label, problems);
   resolve_coupling(resolved);
   Json values = read_by_schema(resolved, problems);
+  stop_at(label, problems);
+  resolve_paths(values, folder, problems);
   stop_at(label, problems);
 
   ReadResult result;

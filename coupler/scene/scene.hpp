@@ -151,6 +151,7 @@ struct InitialMotion {
   Point velocity{};                ///< m/s, the same everywhere
   double noise = 0.0;              ///< m/s, each component uniform in [-noise, noise]
   std::uint64_t noise_seed = 1;
+  std::string state;  ///< results.h5 whose last state the grains begin with; empty: none
 
   bool any() const;
 };

@@ -57,17 +57,6 @@ def displacement(run, reference, index=-1):
     return moved
 
 
-def last_state_of(run, stage):
-    """Index of a stage's last state."""
-    import h5py
-    with h5py.File(run.h5_path, "r") as file:
-        names = [file[f"states/state_{k:06d}"].attrs["stage"] for k in range(len(file["states/time"]))]
-    names = [name.decode() if isinstance(name, bytes) else name for name in names]
-    if stage not in names:
-        raise Failure(f"{run.folder.name} stores no state of stage '{stage}'")
-    return max(k for k, name in enumerate(names) if name == stage)
-
-
 def gradient(points, moved, weight=None):
     """Displacement gradient by a least-squares affine fit."""
     root = np.sqrt(np.ones(len(points)) if weight is None else weight)[:, None]

@@ -54,7 +54,7 @@ def one_packing(context, size, seed):
     reference = measured(context.run_scene(SCENE, {**size, "model": "dem"}))
     found, balance = {}, []
     for model in ("bridging", "edge", "continuum"):
-        done = context.run_scene(SCENE, {**size, "model": model, **triaxial.constants(sample_run, model)})
+        done = context.run_scene(SCENE, {**size, "model": model, **triaxial.constants(sample_run, model, size)})
         found.update({f"{name}_{model}_error": value / reference[name] - 1 for name, value in measured(done).items()})
         balance.append(abs(done.summary["energy"]["balance_error"]))
     units = {"peak_A": ("peak_A_dem_mm", 1e3), "peak_B": ("peak_B_dem_mm", 1e3), "period": ("period_dem_ms", 1e3)}
