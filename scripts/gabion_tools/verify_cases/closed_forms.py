@@ -23,6 +23,7 @@ TESTS = {
         "bar under a step load: twice the static head displacement, a plateau in the middle",
         "plane waves in a periodic column one element wide have the lumped mesh's dispersion exactly",
         "an absorbing end takes a plane P wave",
+        "Lamb: surface motion after a point force on a half space",
         "a free cube at nu 0.45 stays bounded at 0.99 of the step and does not above it",
     ],
     "test_dem_server": [
