@@ -10,6 +10,7 @@
 #include <xmmintrin.h>
 
 #include "coupler/results/errors.hpp"
+#include "coupler/run/checkpoint.hpp"
 #include "coupler/run/simulation.hpp"
 #include "coupler/scene/read_scene.hpp"
 
@@ -25,7 +26,7 @@ volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int) { interrupted = 1; }
 
 struct Arguments {
-  std::string scene, out, dem, continuum, token_file;
+  std::string scene, out, dem, continuum, token_file, resume;
   std::vector<std::string> overrides;
   bool check = false, overwrite = false, json = false;
 };
@@ -59,6 +60,8 @@ int run(const Arguments& arguments) {
   need(grains, arguments.dem, "--dem");
   need(mesh, arguments.continuum, "--continuum");
 
+  nlohmann::json checkpoint;
+  if (!arguments.resume.empty()) checkpoint = coupler::read_checkpoint(arguments.resume, read.hash_text);
   const std::string token = read_token(arguments.token_file);
   if (grains && mesh && arguments.dem == arguments.continuum)
     throw protocol::AddressError("--continuum: the same address as --dem, " + arguments.dem + "; each engine has a port of its own");
@@ -71,7 +74,8 @@ int run(const Arguments& arguments) {
   using Existing = coupler::RunFolder::Existing;
   coupler::RunFolder folder(arguments.out, arguments.overwrite ? Existing::replace : Existing::refuse);
   folder.write_text("scene.effective.json", read.effective);
-  auto simulation = std::make_unique<coupler::Simulation>(read.scene, folder, dem.get(), continuum.get());
+  auto simulation = std::make_unique<coupler::Simulation>(read.scene, read.hash_text, folder, dem.get(), continuum.get());
+  if (!checkpoint.is_null()) simulation->resume_from(std::move(checkpoint));
   simulation->stop_when(&interrupted);
   try {
     const nlohmann::json summary = simulation->run();
@@ -82,6 +86,8 @@ int run(const Arguments& arguments) {
   } catch (const std::exception& error) {
     folder.log(std::string("stopped: ") + error.what());
     const bool began = simulation->began();
+    if (!simulation->last_checkpoint().empty())
+      std::cerr << "\nlast checkpoint: " << simulation->last_checkpoint() << "; go on with gabion resume " << arguments.out << " (coupler: --resume)\n";
     simulation.reset();
     if (!began) folder.abandon();  // nothing was computed: the next try finds the folder as this one did
     throw;
@@ -103,6 +109,7 @@ int main(int argc, char** argv) {
   app.add_option("--dem", arguments.dem, "HOST:PORT of the dem_server");
   app.add_option("--continuum", arguments.continuum, "HOST:PORT of the continuum_server");
   app.add_option("--token-file", arguments.token_file, "file with the run's token (default: environment variable GABION_TOKEN)");
+  app.add_option("--resume", arguments.resume, "run folder, or checkpoint in it, to go on from; results go to --out");
   app.add_flag("--check", arguments.check, "only check the scene");
   app.add_flag("--json", arguments.json, "with --check: print what the scene needs as JSON");
   app.add_flag("--overwrite", arguments.overwrite, "replace an earlier run in the run folder");

@@ -53,4 +53,21 @@ std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& d
   return row;
 }
 
+nlohmann::json EnergyBalance::state() const {
+  return {{"first", first_}, {"error", error_}, {"residual", residual_}, {"scale", scale_}, {"lost", lost_}, {"drift", drift_},
+          {"previous", previous_}, {"started", started_}, {"new_stage", new_stage_}};
+}
+
+void EnergyBalance::restore(const nlohmann::json& state) {
+  first_ = state.at("first");
+  error_ = state.at("error");
+  residual_ = state.at("residual");
+  scale_ = state.at("scale");
+  lost_ = state.at("lost");
+  drift_ = state.at("drift");
+  previous_ = state.at("previous");
+  started_ = state.at("started");
+  new_stage_ = state.at("new_stage");
+}
+
 }  // namespace gabion::coupler

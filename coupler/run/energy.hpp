@@ -1,6 +1,7 @@
 #pragma once
 // The energy balance of a run, from the ledgers of the engines.
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,10 @@ class EnergyBalance {
   double largest_energy() const { return scale_; }        ///< J
   double dissipated() const { return lost_; }             ///< J
   const std::vector<double>& last() const { return last_; }
+
+  /// For checkpoints.
+  nlohmann::json state() const;
+  void restore(const nlohmann::json& state);
 
  private:
   std::vector<std::string> columns_;

@@ -162,6 +162,25 @@ void FaceSide::keep_reactions(const Hold& hold) {
     }
   dead.vectors = vectors;
   link_->tell(dead);
+  dead_[dead.name] = std::move(dead);
+}
+
+nlohmann::json FaceSide::dead_loads() const {
+  nlohmann::json loads = nlohmann::json::object();
+  for (const auto& [name, dead] : dead_) loads[name] = {{"entities", dead.entities.data}, {"vectors", dead.vectors.data}};
+  return loads;
+}
+
+void FaceSide::tell_dead_loads(const nlohmann::json& loads) {
+  for (const auto& [name, saved] : loads.items()) {
+    protocol::Loads& dead = dead_[name];
+    dead.name = name;
+    dead.entities = saved.at("entities").get<std::vector<std::int32_t>>();
+    dead.vectors = saved.at("vectors").get<std::vector<double>>();
+    dead.history_kind = "constant";
+    dead.history = std::vector<double>{1.0};
+    link_->tell(dead);
+  }
 }
 
 Inertia FaceSide::inertia(const std::vector<double>& mass, double dt) const {

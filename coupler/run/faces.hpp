@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -41,6 +43,10 @@ class FaceSide {
   /// m + c dt/2 and freedom of every point, for the multipliers.
   Inertia inertia(const std::vector<double>& mass, double dt) const;
 
+  /// For checkpoints: the reactions that became dead loads.
+  nlohmann::json dead_loads() const;
+  void tell_dead_loads(const nlohmann::json& loads);
+
  private:
   void hold(int face, const scene::Face& condition, std::vector<Hold> holds);
   void keep_reactions(const Hold& hold);
@@ -54,6 +60,7 @@ class FaceSide {
   };
   std::array<State, 6> faces_;
   std::vector<Triple> freedom_, viscosity_;
+  std::map<std::string, protocol::Loads> dead_;
 };
 
 /// Both sides, with the areas and groups worked out once.
@@ -62,6 +69,11 @@ class Faces {
   Faces(const scene::Scene& scene, const Assembly& assembly, EngineLink* dem, EngineLink* continuum);
   void apply(int face, const scene::Face& condition);
   Inertia grain_inertia(const std::vector<double>& mass, double dt) const { return grains_.inertia(mass, dt); }
+  nlohmann::json dead_loads() const { return {{"grains", grains_.dead_loads()}, {"nodes", nodes_.dead_loads()}}; }
+  void tell_dead_loads(const nlohmann::json& loads) {
+    grains_.tell_dead_loads(loads.at("grains"));
+    nodes_.tell_dead_loads(loads.at("nodes"));
+  }
   Inertia node_inertia(const std::vector<double>& mass, double dt) const { return nodes_.inertia(mass, dt); }
 
  private:

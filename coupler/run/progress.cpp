@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace gabion::coupler {
@@ -18,8 +19,10 @@ void Progress::show(const std::string& stage, std::uint64_t step, double time, d
   const Clock::time_point now = Clock::now();
   const bool new_stage = stage != stage_;
   if (new_stage) {
+    if (stage_.empty()) rated_step_ = step;  // a run that goes on begins with many steps behind it
     stage_ = stage;
     stage_begin_ = now;
+    first_part_ = part;
   }
   if (!new_stage && std::chrono::duration<double>(now - shown_).count() < (terminal_ ? terminal_interval : file_interval)) return;
   const double passed = std::chrono::duration<double>(now - rated_).count();
@@ -27,8 +30,8 @@ void Progress::show(const std::string& stage, std::uint64_t step, double time, d
   rated_ = shown_ = now;
   rated_step_ = step;
   char left[32] = "";
-  if (part > 0.0 && part < 1.0) {
-    const double eta = std::chrono::duration<double>(now - stage_begin_).count() * (1.0 - part) / part;
+  if (part > first_part_ && part < 1.0) {
+    const double eta = std::chrono::duration<double>(now - stage_begin_).count() * (1.0 - part) / std::max(part - first_part_, 1e-6);
     std::snprintf(left, sizeof left, "  ETA %.0f s", eta);
   }
   std::fprintf(stderr, "%s%-10s t = %.6g s  step %llu  %.0f steps/s%s  unbalanced %.1e  energy error %.1e%s",

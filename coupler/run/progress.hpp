@@ -23,7 +23,7 @@ class Progress {
   Clock::time_point shown_, rated_, stage_begin_;
   std::string stage_;
   std::uint64_t rated_step_ = 0;
-  double rate_ = 0.0;
+  double rate_ = 0.0, first_part_ = 0.0;
 };
 
 }  // namespace gabion::coupler

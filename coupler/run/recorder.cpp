@@ -288,6 +288,21 @@ nlohmann::json Recorder::figures() const {
   return figures;
 }
 
+nlohmann::json Recorder::memory() const {
+  return {{"energy", energy_.state()}, {"zeroed_grains", zeroed_grains_}, {"zeroed_nodes", zeroed_nodes_}, {"zeroed_probes", zeroed_probes_},
+          {"zero_probes", zero_probes_}, {"next_probe", next_probe_}, {"probe_figures", probe_figures_}};
+}
+
+void Recorder::remember(const nlohmann::json& memory) {
+  energy_.restore(memory.at("energy"));
+  memory.at("zeroed_grains").get_to(zeroed_grains_);
+  memory.at("zeroed_nodes").get_to(zeroed_nodes_);
+  memory.at("zeroed_probes").get_to(zeroed_probes_);
+  memory.at("zero_probes").get_to(zero_probes_);
+  memory.at("next_probe").get_to(next_probe_);
+  memory.at("probe_figures").get_to(probe_figures_);
+}
+
 void Recorder::close() {
   for (auto* history : {&monitor_, &energy_rows_, &probes_, &reactions_, &counters_, &block_})
     if (*history) (*history)->flush();

@@ -47,6 +47,9 @@ class Recorder {
   const EnergyBalance& energy() const { return energy_; }
   /// Largest displacement component of each probe over the run, m, and its last value.
   nlohmann::json figures() const;
+  /// For checkpoints: what the next row or state depends on.
+  nlohmann::json memory() const;
+  void remember(const nlohmann::json& memory);
   void close();
 
  private:

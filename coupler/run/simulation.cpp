@@ -32,14 +32,20 @@ std::string number(double value) {
 
 }  // namespace
 
-Simulation::Simulation(const scene::Scene& scene, RunFolder& folder, EngineLink* dem, EngineLink* continuum)
-    : scene_(scene), folder_(folder), dem_(dem), continuum_(continuum), log_([this](const std::string& line) { folder_.log(line); }) {}
+Simulation::Simulation(const scene::Scene& scene, const std::string& scene_hash, RunFolder& folder, EngineLink* dem,
+                       EngineLink* continuum)
+    : scene_(scene), scene_hash_(scene_hash), folder_(folder), dem_(dem), continuum_(continuum), log_([this](const std::string& line) { folder_.log(line); }) {}
 
 nlohmann::json Simulation::run() {
   const auto begin = Clock::now();
   prepare();
   wall_preparing_ = std::chrono::duration<double>(Clock::now() - begin).count();
-  for (const scene::Stage& stage : scene_.stages) run_stage(stage);
+  const std::size_t first = resumed_.is_null() ? 0 : restore_checkpoint();
+  for (std::size_t s = first; s < scene_.stages.size(); ++s) {
+    const scene::Stage& stage = scene_.stages[s];
+    if (s > first || resumed_.is_null()) begin_stage(s);
+    run_stage(stage);
+  }
   progress_.end_line();
   recorder_->close();
   nlohmann::json result = summary();
@@ -149,31 +155,35 @@ void Simulation::set_step(double dt) {
                         ": more multipliers than the grains can carry; the reduced solve is used. Coarser rows: mortar2h or a larger mesh.size");
 }
 
-void Simulation::run_stage(const scene::Stage& stage) {
-  const bool first = stepper_->step() == 0 && stages_.empty();
-  if (first)
+void Simulation::apply_faces(std::size_t index, double start) {
+  if (index == 0)
     for (int face = 0; face < 6; ++face)
       if (!scene_.ground.periodic[face / 2]) faces_->apply(face, scene_.faces[face]);
-  for (const auto& [face, condition] : stage.faces) {
+  for (const auto& [face, condition] : scene_.stages[index].faces) {
     scene::Face moved = condition;
-    moved.history = scene::shifted(condition.history, stepper_->time());
+    moved.history = scene::shifted(condition.history, start);
     faces_->apply(face, moved);
   }
-  if (scene_.block && &stage == &scene_.stages[static_cast<std::size_t>(scene_.block->stage)]) release_block();
+}
+
+void Simulation::begin_stage(std::size_t index) {
+  const scene::Stage& stage = scene_.stages[index];
+  const bool first = index == 0;
+  apply_faces(index, stepper_->time());
+  if (scene_.block && scene_.block->stage == static_cast<int>(index)) release_block();
 
   if (stage.zero_displacements) recorder_->zero_displacements(dem_, continuum_);
 
   double dt = choose_step(stage);
   // ends at the first of duration, steps and until; at_least holds for until alone
   std::uint64_t most = stage.steps > 0 ? stage.steps : stage.max_steps;
-  const bool limited = stage.steps > 0 || std::isfinite(stage.duration);
   if (std::isfinite(stage.duration)) {
     const auto whole = static_cast<std::uint64_t>(std::ceil(stage.duration / dt));
     dt = stage.duration / static_cast<double>(whole);
     most = stage.steps > 0 ? std::min(most, whole) : whole;
   }
-  const bool until_still = stage.unbalanced > 0.0;
-  const auto least = static_cast<std::uint64_t>(std::ceil(stage.at_least / dt));
+  at_ = {.stage = index, .taken = 0, .most = most, .least = static_cast<std::uint64_t>(std::ceil(stage.at_least / dt)),
+         .unbalanced = scene::infinity};
   set_step(dt);
   if (first) {
     try {
@@ -186,11 +196,15 @@ void Simulation::run_stage(const scene::Stage& stage) {
     next_output_ = scene_.output.every;
   }
   log_("stage " + stage.name + ": dt " + number(dt) + " s (stable " + number(stable_dem_) + " s grains, " + number(stable_continuum_) + " s continuum)");
-
   recorder_->start_stage();
-  std::uint64_t taken = 0;
-  double unbalanced = scene::infinity;
-  const auto rested = [&] { return until_still && taken >= least && unbalanced < stage.unbalanced; };
+}
+
+void Simulation::run_stage(const scene::Stage& stage) {
+  auto& [index, taken, most, least, unbalanced] = at_;
+  const bool until_still = stage.unbalanced > 0.0, limited = stage.steps > 0 || std::isfinite(stage.duration);
+  const auto rested = [&, &taken = taken, &least = least, &unbalanced = unbalanced] {
+    return until_still && taken >= least && unbalanced < stage.unbalanced;
+  };
   while (taken < most && !rested()) {
     std::uint64_t chunk = std::min<std::uint64_t>(std::max<std::uint64_t>(1, scene_.output.monitor_steps), most - taken);
     if (taken == 0) chunk = 1;  // the stage's own first balance
@@ -207,7 +221,9 @@ void Simulation::run_stage(const scene::Stage& stage) {
                    unbalanced, recorder_->energy().error());
     if (block_) recorder_->block_row(stepper_->time(), *block_, dem_->fetch("block"));
     watch(stage, last_);
-    if (stop_ && *stop_) {
+    const bool stopping = stop_ && *stop_;
+    if (stopping || checkpoint_due()) save_checkpoint();
+    if (stopping) {
       recorder_->close();
       throw Interrupted("interrupted at step " + std::to_string(stepper_->step()) + ", results up to t = " + number(stepper_->time()) + " s");
     }
@@ -239,6 +255,11 @@ void Simulation::release_block() {
   for (std::size_t g = 0; g < present.position.size(); ++g)
     for (int axis = 0; axis < 3; ++axis) present.position[g][axis] += moved[3 * g + static_cast<std::size_t>(axis)];
   block_ = placed_block(present);
+  tell_block();
+  log_("block: lowest corner at " + number(block_->lowest) + " m, mean surface level " + number(block_->surface_level) + " m");
+}
+
+void Simulation::tell_block() {
   protocol::Block message;
   std::vector<double> vertices;
   for (const Point& v : block_->vertices) vertices.insert(vertices.end(), v.begin(), v.end());
@@ -252,7 +273,6 @@ void Simulation::release_block() {
   message.friction = scene_.block->friction;
   dem_->tell(message);
   dem_->ask<protocol::Ready>(protocol::Prepare{});
-  log_("block: lowest corner at " + number(block_->lowest) + " m, mean surface level " + number(block_->surface_level) + " m");
 }
 
 /// Stops what cannot be trusted: motion that is no number, an interface that has turned too far.
@@ -278,7 +298,8 @@ nlohmann::json Simulation::summary() const {
   nlohmann::json s;
   static const std::map<scene::Model, const char*> names{
       {scene::Model::dem, "dem"}, {scene::Model::continuum, "continuum"}, {scene::Model::bridging, "bridging"}, {scene::Model::edge, "edge"}};
-  s["scene"] = scene_.name;
+  s["scene"] = resumed_.is_null() ? scene_.name : resumed_.at("scene").get<std::string>();
+  if (!resumed_.is_null()) s["resumed"] = {{"step", resumed_.at("step")}, {"time", resumed_.at("time")}};
   s["title"] = scene_.title;
   s["model"] = names.at(scene_.model);
   if (last_.dem) s["state_hash"]["dem"] = hex(last_.dem->state_hash);

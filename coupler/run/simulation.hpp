@@ -1,6 +1,7 @@
 #pragma once
 // A run from the first message to the summary.
 
+#include <chrono>
 #include <csignal>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -36,10 +37,14 @@ struct Interrupted : std::runtime_error {
 class Simulation {
  public:
   /// Links may be null where the model does without them.
-  Simulation(const scene::Scene& scene, RunFolder& folder, EngineLink* dem, EngineLink* continuum);
+  Simulation(const scene::Scene& scene, const std::string& scene_hash, RunFolder& folder, EngineLink* dem, EngineLink* continuum);
 
   /// Everything; the summary is returned and written as summary.json. Throws the errors above and the protocol's.
   nlohmann::json run();
+  /// Makes run() go on from a checkpoint (read_checkpoint) of the same scene; to be called before it.
+  void resume_from(nlohmann::json checkpoint) { resumed_ = std::move(checkpoint); }
+  /// Where a run that has failed can be taken up again; empty: nowhere.
+  const std::string& last_checkpoint() const { return last_checkpoint_; }
   /// A flag that ends the run, with Interrupted, between two chunks of steps.
   void stop_when(const volatile std::sig_atomic_t* flag) { stop_ = flag; }
   /// True once a step was taken.
@@ -48,16 +53,24 @@ class Simulation {
  private:
   void prepare();
   void place_probes();
+  void apply_faces(std::size_t index, double start);
+  void begin_stage(std::size_t index);
   void run_stage(const scene::Stage& stage);
   double choose_step(const scene::Stage& stage);
   double stable_step();
   void set_step(double dt);
   PlacedBlock placed_block(const GrainSet& grains) const;
   void release_block();
+  void tell_block();
+  bool checkpoint_due() const;
+  void save_checkpoint();
+  /// Brings everything to where the checkpoint was taken; returns the index of its stage.
+  std::size_t restore_checkpoint();
   void watch(const scene::Stage& stage, const Advance& advance);
   nlohmann::json summary() const;
 
   const scene::Scene& scene_;
+  std::string scene_hash_;
   RunFolder& folder_;
   EngineLink* dem_;
   EngineLink* continuum_;
@@ -73,6 +86,16 @@ class Simulation {
   std::vector<double> grain_mass_, node_mass_, grain_weights_;
   double stable_dem_ = 0.0, stable_continuum_ = 0.0, dt_ = 0.0, next_output_ = 0.0;
   Advance last_;
+  /// Where the present stage is.
+  struct StagePlace {
+    std::size_t stage = 0;
+    std::uint64_t taken = 0, most = 0, least = 0;  ///< steps: done, at most, before rest is looked for
+    double unbalanced = 0.0;
+  };
+  StagePlace at_;
+  nlohmann::json resumed_;  ///< null: a run from the start
+  std::string last_checkpoint_;
+  std::chrono::steady_clock::time_point checkpointed_ = std::chrono::steady_clock::now();
   std::optional<PlacedBlock> block_;  ///< once it is released
   nlohmann::json stages_ = nlohmann::json::array();
   std::vector<std::string> warnings_;

@@ -28,6 +28,11 @@ class Stepper {
   /// Takes steps of dt and returns what the engines report. The clock moves on.
   Advance advance(std::uint64_t steps, double dt, double damping, bool measure);
 
+  /// Sets the clock of a run that goes on.
+  void resume(std::uint64_t step, double time) {
+    step_ = step;
+    time_ = time;
+  }
   std::uint64_t step() const { return step_; }
   double time() const { return time_; }
   const StepTimes& times() const { return times_; }

@@ -9,6 +9,7 @@ from gabion_tools.errors import UserError, Failure
 
 COMMANDS = {
     "run": "run a scene, then plots and a report",
+    "resume": "go on with a run that was broken off",
     "check": "read a scene, say what it would do or what is wrong with it",
     "test": "build everything and run every test",
     "verify": "compare with closed forms and references, figure by figure",

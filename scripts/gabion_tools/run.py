@@ -55,8 +55,12 @@ def check_scene(scene, changes):
 
 
 def engines(model, threads):
-    """{engine: threads}. Without a continuum one engine has every core; else they share them."""
+    """{engine: threads}. Without a continuum one engine has every core; else they share them. threads: a number for
+    both, a dict {"dem": ..., "continuum": ...} or None."""
     cores = os.cpu_count() or 1
+    if isinstance(threads, dict):
+        chosen = engines(model, None)
+        return {name: threads.get(name.removesuffix("_server"), count) for name, count in chosen.items()}
     if model == "dem":
         return {"dem_server": threads or cores}
     # The grains' engine is needed for a continuum too: stiffness is measured on the packing.
@@ -100,8 +104,14 @@ def run_one(scene, options, model, folder):
         folder = prepare(options.out, options.overwrite) if options.out else free_folder(f"{scene.stem}-{model}")
     else:
         folder = prepare(folder, options.overwrite)
+    return carry_out(scene, changes, model, folder, options)
+
+
+def carry_out(scene, changes, model, folder, options, extra=()):
+    """Runs, summarises and draws; extra: further words for the coupler. Exit code of the coupler."""
     print(f"run folder {short(folder)}", flush=True)
-    code = processes.couple(scene, scenes.override_arguments(changes), folder, engines(model, options.threads),
+    threads = options.threads or scenes.threads(scene, changes)
+    code = processes.couple(scene, [*scenes.override_arguments(changes), *extra], folder, engines(model, threads),
                             options.overwrite)
     if (folder / "summary.json").exists():
         print(summary.table(folder))

@@ -40,6 +40,25 @@ def model(path, overrides):
         return None
 
 
+def threads(path, overrides):
+    """run.threads of the scene, overrides included: a number, a dict of those given, or None."""
+    try:
+        chosen = json.loads(without_comments(path.read_text(encoding="utf-8"))).get("run", {}).get("threads")
+    except (ValueError, AttributeError, OSError):
+        chosen = None
+    for override in overrides:
+        key, _, value = override.partition("=")
+        key, number = key.strip(), value.strip()
+        if key == "run.threads":
+            try:
+                chosen = json.loads(number)
+            except ValueError:
+                chosen = None
+        elif key.startswith("run.threads.") and number.isdigit():
+            chosen = {**(chosen if isinstance(chosen, dict) else {}), key.rpartition(".")[2]: int(number)}
+    return chosen or None
+
+
 def models(text):
     """The list behind --models."""
     if text == "all":

@@ -18,6 +18,7 @@ parser.add_argument("--out", type=Path)
 parser.add_argument("--dem")
 parser.add_argument("--continuum")
 parser.add_argument("--overwrite", action="store_true")
+parser.add_argument("--resume")
 options = parser.parse_args()
 behaviour = os.environ.get("STAND_IN_COUPLER", "")
 

@@ -44,6 +44,30 @@ class RunsTest(LauncherTest):
             done = self.launch("run", self.scene, "--out", "out", "--overwrite", "--no-plots")
             self.assertEqual(done.returncode, 0, done.stderr)
 
+    def test_resume_hands_the_checkpoint_to_the_coupler(self):
+        broken_off = self.folder / "runs-1"
+        broken_off.mkdir()
+        done = self.launch("resume", broken_off)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("holds no scene.effective.json", done.stderr)
+        (broken_off / "scene.effective.json").write_text('{"model": "edge"}', encoding="utf-8")
+        done = self.launch("resume", broken_off)
+        self.assertIn("holds no checkpoint", done.stderr)
+        (broken_off / "checkpoint").write_bytes(b"state")
+        done = self.launch("resume", broken_off, "--out", "rest", "--no-plots")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((self.folder / "rest" / "continuum_server.log").exists())
+        self.assert_nothing_left()
+
+    def test_threads_of_the_scene(self):
+        self.scene.write_text('{"model": "bridging", "run": {"threads": {"dem": 3}}}', encoding="utf-8")
+        self.assertEqual(run.engines("bridging", scenes.threads(self.scene, []))["dem_server"], 3)
+        self.assertEqual(scenes.threads(self.scene, ["run.threads=2"]), 2)
+        both = run.engines("bridging", scenes.threads(self.scene, ["run.threads=2"]))
+        self.assertEqual(both, {"dem_server": 2, "continuum_server": 2})
+        self.assertEqual(scenes.threads(self.scene, ["run.threads.continuum=5"]), {"dem": 3, "continuum": 5})
+        self.assertEqual(scenes.threads(self.write_scene("dem"), []), None)
+
     def test_a_scene_may_have_comments(self):
         self.assertEqual(scenes.model(self.scene, []), "bridging")
         self.assertEqual(scenes.model(self.scene, ["model=edge"]), "edge")
