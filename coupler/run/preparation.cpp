@@ -18,6 +18,8 @@ namespace {
 
 /// Changes when what a cached file depends on changes in meaning.
 constexpr std::uint64_t cache_version = 1;
+/// Of the load cases that give a packing's stiffness: their figures are then good to this share.
+constexpr double largest_homogenisation_residual = 1e-3;
 
 std::vector<double> flatten(const std::vector<Point>& points) {
   std::vector<double> flat;
@@ -247,6 +249,10 @@ Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_pac
     homogenise.box_lo = flatten(window.lo);
     homogenise.box_hi = flatten(window.hi);
     measured = dem->ask<protocol::Homogenised>(homogenise);
+    if (measured->residual > largest_homogenisation_residual)
+      throw std::runtime_error("mesh.stiffness: the packing's stiffness could not be measured, the load cases have a residual of " +
+                               std::to_string(measured->residual) + "; grains that nothing holds? Raise grains.contacts_per_grain, or give young, "
+                               "poisson and bulk_density and use mesh.stiffness = material");
     write_cached(path, *measured);
   }
   Elasticity elasticity;

@@ -235,6 +235,9 @@ void Simulation::run_stage(const scene::Stage& stage) {
   if (until_still && !limited && !rested())
     throw RunFailed("stage '" + stage.name + "' is not at rest after " + std::to_string(taken) + " steps: unbalanced " + number(unbalanced) +
                     ", wanted " + number(stage.unbalanced) + "; raise stages.max_steps or the damping, or look for a part that moves freely");
+  if (until_still && limited && !rested())
+    warnings_.push_back("stage '" + stage.name + "' ended after " + std::to_string(taken) + " steps, before it was at rest: unbalanced " +
+                        number(unbalanced) + ", wanted " + number(stage.unbalanced));
   if (recorder_->last_state_step() != stepper_->step())
     recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
   stages_.push_back({{"name", stage.name}, {"steps", taken}, {"time", stepper_->time()}, {"unbalanced", unbalanced}, {"dt", dt_}});

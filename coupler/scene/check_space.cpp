@@ -138,6 +138,31 @@ void check_overlap(Checker& check) {
   }
 }
 
+/// The mesh has the ground's stiffness everywhere: a fill belongs where grains stand alone.
+void check_fills_and_mesh(Checker& check) {
+  const Scene& scene = check.scene;
+  if (scene.model == Model::dem) return;
+  Box alone = scene.ground.box;
+  if (scene.model == Model::continuum) alone.hi = alone.lo;
+  if (check.coupled())
+    for (int face = 0; face < 6; ++face) {
+      if (!is_interface(scene, face)) continue;
+      const double inward = scene.model == Model::bridging ? scene.coupling.overlap : 0.0;
+      face_coordinate(alone, face) = face_coordinate(*scene.grains.zone, face) + (face % 2 == 0 ? inward : -inward);
+    }
+  for (std::size_t i = 0; i < scene.fills.size(); ++i) {
+    bool reaches = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double slack = tolerance(scene.ground.box), lo = std::max(scene.fills[i].box.lo[axis], scene.ground.box.lo[axis]),
+                   hi = std::min(scene.fills[i].box.hi[axis], scene.ground.box.hi[axis]);
+      reaches = reaches || lo < alone.lo[axis] - slack || hi > alone.hi[axis] + slack;
+    }
+    if (reaches)
+      check.warn(item("fills", i) + ".box", "a fill inside the part where grains stand alone",
+                 "the mesh has the stiffness of ground.material everywhere: make the zone larger or the fill smaller");
+  }
+}
+
 void check_elements(Checker& check) {
   const Scene& scene = check.scene;
   const double h = scene.mesh.size;
@@ -227,6 +252,7 @@ void check_space(Checker& check) {
   const bool sound_zone = check_zone(check);
   if (check.has_mesh() && has_size) check_elements(check);
   if (sound_zone && has_size && has_radius) check_overlap(check);
+  if (sound_zone) check_fills_and_mesh(check);
   if (sound_zone) check_block_place(check);
 }
 

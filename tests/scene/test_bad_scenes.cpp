@@ -245,5 +245,10 @@ TEST_CASE("warnings do not stop") {
   CHECK(warned("tiny.json", {"stages[0].until={\"unbalanced\": 1e-3}"}, "stages[0].damping"));
   CHECK(warned("lattice_wave.json", {"initial.wave.wavelength=0.5 m"}, "initial.wave.wavelength"));
   CHECK(warned("lattice_wave.json", {"model=dem", "initial.wave.wavelength=0.5 m"}, "initial.wave.wavelength"));
+  const std::string wide = R"(fills[0].box=[["-2 m","-2 m","-2 m"],["4 m","2 m","0 m"]])";
+  CHECK(warned("impact.json", {wide}, "fills[0].box"));
+  CHECK(warned("impact.json", {"model=edge", wide}, "fills[0].box"));
+  CHECK_FALSE(warned("impact.json", {"model=dem", wide}, "fills[0].box"));
+  CHECK_FALSE(warned("impact.json", {"model=bridging"}, "fills[0].box"));
   CHECK_FALSE(warned("tiny.json", {"gravity=[0,0,\"-9.81 m/s2\"]"}, "gravity"));
 }

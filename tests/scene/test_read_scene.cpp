@@ -72,6 +72,23 @@ TEST_CASE("the hash follows what changes a result, and nothing else") {
   CHECK(tiny().hash_text.size() == 16);
 }
 
+TEST_CASE("the reach of an edge tie follows from rows, packing and stiffness ratio, and shows in the effective scene") {
+  const auto reach = [](std::vector<std::string> changes) {
+    changes.insert(changes.begin(), "model=edge");
+    return tiny(changes).scene.coupling.reach;
+  };
+  const double ratio = std::log(1.13 / 3.78);  // k_s/k_n of seed_soil
+  CHECK(reach({}) == Approx(1.30 + 0.20 * ratio));
+  CHECK(reach({"coupling.border_weights=false"}) == Approx(0.885 + 0.085 * ratio));
+  CHECK(reach({"coupling.edge.rows=edge_hats"}) == 1.25);
+  CHECK(reach({"coupling.edge.rows=edge_projected"}) == 0.9);
+  CHECK(reach({"coupling.edge.reach=1"}) == 1.0);
+  const auto read = tiny({"model=edge"});
+  CHECK(read.scene.coupling.border_weights);
+  CHECK(Json::parse(read.effective)["coupling"]["reach"] == read.scene.coupling.reach);
+  CHECK_FALSE(tiny({}).scene.coupling.border_weights);
+}
+
 TEST_CASE("coupling keys of a model win over the common ones") {
   const auto read = tiny({"coupling.reach=0.8", "coupling.edge.reach=1.1", "coupling.edge.rows=edge_hats"});
   CHECK(read.scene.coupling.reach == 0.8);

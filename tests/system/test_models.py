@@ -81,6 +81,49 @@ class Models(SystemTest):
         plain, changed = self.run_scene("tiny_lattice.json", out="plain"), self.run_scene("tiny_lattice.json", change, out="changed")
         self.assertNotEqual(plain["state_hash"]["continuum"], changed["state_hash"]["continuum"])
 
+    def test_grains_begin_where_another_run_left_them(self):
+        # displacements and rotations of a strained lattice, brought back: the contacts bear the same forces
+        still = 'stages=[{"name": "look", "steps": 1}]'
+        fields = 'output={"fields": ["rotation", "contact_force", "jump", "multiplier"]}'
+        changes = ["initial={\"strain\": [0, 0, 1e-5, 0, 0, 0]}", "faces={}", still, fields]
+        self.run_scene("tiny_lattice.json", "model=dem", *changes, out="first")
+        first = self.out / "results.h5"
+        changes[0] = f'initial={{"strain": [0, 0, 1e-5, 0, 0, 0], "state": "{first}"}}'
+        self.run_scene("tiny_lattice.json", *changes, out="second")
+        with h5py.File(first) as old, h5py.File(self.out / "results.h5") as new:
+            known = dict(zip(old["grains/origin_id"][:], old["grains/state_000001/displacement"][:]))
+            for name, u in zip(new["grains/origin_id"][:], new["grains/state_000000/displacement"][:]):
+                self.assertTrue((known[name] == u).all())
+            contacts = new["contacts/state_000000"]
+            self.assertEqual(contacts["force"].shape, contacts["normal"].shape)
+            self.assertEqual(len(contacts["grains"]), len(contacts["force"]))
+            rows = len(new["interface/position"])
+            for field in ("jump", "multiplier_force"):
+                self.assertEqual(new[f"interface/state_000001/{field}"].shape, (rows, 3))
+            # the mesh is strained alike: after one step grains and mesh are still together
+            self.assertLess(numpy.abs(new["interface/state_000001/jump"][:]).max(), 1e-9)
+        self.out = self.folder / "third"
+        ended = self.ended(self.coupler("tiny_lattice.json", "--check", "--set", 'initial.state="nowhere.h5"'))
+        self.assertEqual(ended.status, 2, ended)
+        self.assertIn("initial.state", ended.error)
+
+    def test_displacements_are_zeroed(self):
+        stages = 'stages=[{"name": "one", "steps": 100}, {"name": "two", "steps": 1, "zero_displacements": true}]'
+        self.run_scene("tiny_lattice.json", stages, "output={}")
+        with h5py.File(self.out / "results.h5") as file:
+            for part in ("grains", "mesh"):
+                before, after = (file[f"{part}/state_{k:06d}/displacement"][:] for k in (1, 2))
+                self.assertTrue((file[f"{part}/state_000002/zeroed_displacement"][:] == before).all())
+                self.assertLess(numpy.abs(after).max(), 0.1 * numpy.abs(before).max())
+        last = [float(x) for x in rows_of(self.out / "probes.csv")[-1]]
+        self.assertEqual(set(last[1:]), {0.0}, "the first sample of the stage is its zero")
+
+    def test_probes_now_and_then(self):
+        self.run_scene("tiny_lattice.json", 'stages=[{"name": "one", "steps": 100}]', "output.probe_every=1 ms", out="rare")
+        times = [float(row[0]) for row in rows_of(self.out / "probes.csv")[1:]]
+        self.assertGreater(len(times), 5)
+        self.assertTrue(all(0.8e-3 < b - a < 1.2e-3 for a, b in zip(times, times[1:])), times)
+
     def test_two_stages_follow_one_another(self):
         stages = 'stages=[{"name": "still", "damping": 0.7, "steps": 30}, {"name": "free", "steps": 20}]'
         summary = self.run_scene("tiny_lattice.json", stages)
