@@ -256,10 +256,13 @@ void DemEngine::set_masses() {
   std::vector<double> total(grains_.size(), 0.0);
   std::vector<std::int32_t> count(grains_.size(), 0);
   const ContactTable& table = contact_.table;
+  // weights vary within a grain at a border: a pair that may soon touch there must not find a mass without its share
+  const double near = weights.border() ? near_gap * grains_.mean_radius() : -INFINITY;
   table.each([&](std::size_t i, std::size_t c) {
-    if (!(table.state[c] & bonded)) return;
     Vec branch = table.branch[c];
     branch[3] = 0.0;
+    const double gap = norm(branch) - grains_.radius[i] - grains_.radius[static_cast<std::size_t>(table.second[c])];
+    if (!(table.state[c] & bonded) && gap > near) return;
     const double w = contact_weight(source(), i, table.second[c], branch);
     for (const std::size_t g : {i, static_cast<std::size_t>(table.second[c])}) {
       total[g] += w;
