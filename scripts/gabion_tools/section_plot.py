@@ -2,6 +2,7 @@
 
 import numpy as np
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
+from matplotlib.colors import LogNorm, Normalize
 
 from gabion_tools.history_plots import time_column, title
 from gabion_tools.run_data import split_unit
@@ -51,72 +52,105 @@ def cut_elements(nodes, elements, axis, value, moved=None):
     return polygons
 
 
-def section(run, plane=None):
-    """Grains as circles by displacement (or broken bonds), the mesh as a grid, the overlap shaded, the block."""
-    grains, mesh, block = run.state("grains"), run.state("mesh"), run.state("block")
-    rest = [a for a in (grains.get("position"), mesh.get("nodes")) if a is not None and len(a)]
-    if not rest:
-        return None
-    low, high = np.min([a.min(axis=0) for a in rest], axis=0), np.max([a.max(axis=0) for a in rest], axis=0)
-    axis, value = chosen_plane(plane, low, high)
-    flat = [a for a in range(3) if a != axis]
-    motion = np.concatenate([part["displacement"] for part in (grains, mesh) if len(part.get("displacement", []))]
-                            or [np.zeros((1, 3))])
-    factor = 1.0 if block else magnified(motion, (high - low).max())
-    largest = np.nanmax(np.linalg.norm(motion, axis=1)) or 1.0
-    across, up = (high - low)[flat]
-    figure, panel = plt.subplots(figsize=(min(8.0, max(5.0, 6.2 * across / up + 2.5)),
-                                          min(8.0, max(4.0, 6.0 * up / across + 1.0))))
-    colours = None
+class Section:
+    """What a section shows of a run's last state: places drawn, displacements, the cut."""
 
-    if len(mesh.get("nodes", [])):
-        moved = mesh["nodes"] + factor * mesh.get("displacement", np.zeros_like(mesh["nodes"]))
-        polygons = cut_elements(mesh["nodes"], mesh["elements"], axis, value, moved)
-        by_node = np.linalg.norm(mesh.get("displacement", np.zeros_like(mesh["nodes"])), axis=1)
-        weight = mesh.get("weight", np.ones(len(mesh["elements"])))
-        colours = panel.add_collection(PolyCollection(
+    def __init__(self, run, plane):
+        self.grains, self.mesh, self.block = run.state("grains"), run.state("mesh"), run.state("block")
+        rest = [a for a in (self.grains.get("position"), self.mesh.get("nodes")) if a is not None and len(a)]
+        self.empty = not rest
+        if self.empty:
+            return
+        self.low, self.high = np.min([a.min(axis=0) for a in rest], axis=0), np.max([a.max(axis=0) for a in rest], axis=0)
+        self.axis, self.value = chosen_plane(plane, self.low, self.high)
+        self.flat = [a for a in range(3) if a != self.axis]
+        parts = [part["displacement"] for part in (self.grains, self.mesh) if len(part.get("displacement", []))]
+        motion = np.linalg.norm(np.concatenate(parts or [np.zeros((1, 3))]), axis=1)
+        self.factor = 1.0 if self.block else magnified(np.concatenate(parts or [np.zeros((1, 3))]), (self.high - self.low).max())
+        # a few grains in flight must not take the whole colour scale
+        self.largest = np.nanpercentile(motion, 99) if self.block else np.nanmax(motion)
+        self.largest = self.largest or np.nanmax(motion) or 1.0
+        # from tenths of a millimetre in the ground to a metre under the block
+        self.norm = LogNorm(1e-4 * self.largest, self.largest, clip=True) if self.block else Normalize(0.0, self.largest)
+        for part, place in ((self.grains, "position"), (self.mesh, "nodes")):
+            if len(part.get(place, [])):
+                part.setdefault("displacement", np.zeros_like(part[place]))
+                moved = part[place] + self.factor * part["displacement"]
+                self.low, self.high = np.fmin(self.low, moved.min(axis=0)), np.fmax(self.high, moved.max(axis=0))
+        if self.block:
+            self.low = np.fmin(self.low, self.block["vertices"].min(axis=0))
+            self.high = np.fmax(self.high, self.block["vertices"].max(axis=0))
+
+    def draw_mesh(self, panel, by_displacement):
+        """Colours of the elements, or None where they are grey."""
+        mesh = self.mesh
+        if not len(mesh.get("nodes", [])):
+            return None
+        moved = mesh["nodes"] + self.factor * mesh["displacement"]
+        polygons = cut_elements(mesh["nodes"], mesh["elements"], self.axis, self.value, moved)
+        by_node = np.linalg.norm(mesh["displacement"], axis=1)
+        drawn = panel.add_collection(PolyCollection(
             [p for p, _ in polygons], array=np.array([by_node[mesh["elements"][e]].mean() for _, e in polygons]),
-            cmap="viridis", clim=(0, largest), edgecolor="0.75", linewidth=0.5))
-        if np.any(grains.get("broken", np.zeros(1)) > 0):  # grains show their bonds: one colour scale is enough
-            colours.set(array=None, facecolor="0.88", edgecolor="0.6")
-            colours = None
+            cmap="viridis", norm=self.norm, edgecolor="0.75", linewidth=0.5))
+        if not by_displacement:
+            drawn.set(array=None, facecolor="0.88", edgecolor="0.6")
+        weight = mesh.get("weight", np.ones(len(mesh["elements"])))
         shared = [p for p, e in polygons if weight[e] < 1.0]
         if shared:
             panel.add_collection(PolyCollection(shared, facecolor="none", edgecolor="#d62728", hatch="///",
                                                 linewidth=0.0, alpha=0.8, zorder=2, label="overlap"))
             panel.legend(loc="upper right", frameon=True, facecolor="white", framealpha=1.0)
-    if len(grains.get("position", [])):
-        u = grains.get("displacement", np.zeros_like(grains["position"]))
-        centre, radius = grains["position"] + factor * u, grains["radius"]
-        off = centre[:, axis] - value
+        return drawn if by_displacement else None
+
+    def draw_grains(self, panel, by_displacement):
+        """Circles where the plane cuts the grains; None without grains."""
+        grains = self.grains
+        if not len(grains.get("position", [])):
+            return None
+        u = grains["displacement"]
+        centre, radius = grains["position"] + self.factor * u, grains["radius"]
+        off = centre[:, self.axis] - self.value
         hit = np.abs(off) < radius
         across = 2 * np.sqrt(radius[hit] ** 2 - off[hit] ** 2)
-        broken = grains.get("broken")
         circles = EllipseCollection(across, across, np.zeros_like(across), units="xy",
-                                    offsets=centre[hit][:, flat], transOffset=panel.transData,
+                                    offsets=centre[hit][:, self.flat], transOffset=panel.transData,
                                     edgecolor="0.15", linewidth=0.3, zorder=3)
-        if broken is not None and np.any(broken > 0):
-            circles.set(array=broken[hit], cmap="inferno_r", clim=(0, broken.max()))
-            figure.colorbar(circles, ax=panel, label="broken bonds of a grain", shrink=0.7)
+        if by_displacement:
+            circles.set(array=np.linalg.norm(u, axis=1)[hit], cmap="viridis", norm=self.norm)
         else:
-            circles.set(array=np.linalg.norm(u, axis=1)[hit], cmap="viridis", clim=(0, largest))
-            colours = circles
-        panel.add_collection(circles)
-        low, high = np.fmin(low, centre.min(axis=0)), np.fmax(high, centre.max(axis=0))
-    if block:
-        faces = np.split(block["face_vertices"], block["face_ptr"][1:-1])
-        outline = [block["vertices"][np.append(face, face[0])][:, flat] for face in faces]
-        panel.add_collection(LineCollection(outline, color="k", linewidth=1.2, zorder=5))
-        low = np.fmin(low, block["vertices"].min(axis=0))
-        high = np.fmax(high, block["vertices"].max(axis=0))
-    if colours is not None:
-        figure.colorbar(colours, ax=panel, label="displacement [m]", shrink=0.7)
-    margin = 0.03 * (high - low).max()
-    panel.set(xlim=(low[flat[0]] - margin, high[flat[0]] + margin),
-              ylim=(low[flat[1]] - margin, high[flat[1]] + margin), aspect="equal",
-              xlabel=f"{AXES[flat[0]]} [m]", ylabel=f"{AXES[flat[1]]} [m]")
-    drawn = "displacements as they are" if factor == 1.0 else f"displacements drawn {factor:g} times larger"
-    panel.set_title(title(run, f"Section at {AXES[axis]} = {value:.4g} m, t = {run.state_times()[-1]:.4g} s") + "\n" + drawn)
+            circles.set(array=grains["broken"][hit], cmap="inferno_r", clim=(0, grains["broken"].max()))
+        return panel.add_collection(circles)
+
+    def draw(self, figure, panel, by_displacement):
+        mesh, grains = self.draw_mesh(panel, by_displacement), self.draw_grains(panel, by_displacement)
+        figure.colorbar(grains or mesh, ax=panel, shrink=0.8, extend="both" if by_displacement and self.block else "neither",
+                        label="displacement [m]" if by_displacement else "broken bonds of a grain")
+        if self.block:
+            faces = np.split(self.block["face_vertices"], self.block["face_ptr"][1:-1])
+            outline = [self.block["vertices"][np.append(face, face[0])][:, self.flat] for face in faces]
+            panel.add_collection(LineCollection(outline, color="k", linewidth=1.2, zorder=5))
+        margin = 0.03 * (self.high - self.low).max()
+        panel.set(xlim=(self.low[self.flat[0]] - margin, self.high[self.flat[0]] + margin),
+                  ylim=(self.low[self.flat[1]] - margin, self.high[self.flat[1]] + margin), aspect="equal",
+                  xlabel=f"{AXES[self.flat[0]]} [m]", ylabel=f"{AXES[self.flat[1]]} [m]")
+
+
+def section(run, plane=None):
+    """Grains as circles, the mesh as a grid, the overlap shaded, the block: by displacement, and where bonds broke by
+    them too, one below the other."""
+    cut = Section(run, plane)
+    if cut.empty:
+        return None
+    broken = np.any(cut.grains.get("broken", np.zeros(1)) > 0)
+    width, height = (cut.high - cut.low)[cut.flat]
+    inches = np.clip(6.0 * height / width, 2.4, 7.0)  # of one panel, 6 wide where it is not too tall
+    figure, panels = plt.subplots(1 + broken, 1, squeeze=False,
+                                  figsize=(max(4.6, min(6.0, inches * width / height) + 1.9), (inches + 0.5) * (1 + broken) + 0.6))
+    for panel, by_displacement in zip(panels[:, 0], (True, False)):
+        cut.draw(figure, panel, by_displacement)
+    drawn = "displacements as they are" if cut.factor == 1.0 else f"displacements drawn {cut.factor:g} times larger"
+    where = f"Section at {AXES[cut.axis]} = {cut.value:.4g} m, t = {run.state_times()[-1]:.4g} s"
+    panels[0, 0].set_title(title(run, where) + "\n" + drawn)
     return save(figure, run.folder, "section")
 
 
