@@ -14,7 +14,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Beyond this share of the ground's smallest side the interface's motion is looked at for rotation.
-constexpr double look_for_rotation = 0.25;
+constexpr double look_for_rotation = 0.1;
+/// Share of sliding or broken contacts among the tied grains above which the run warns.
+constexpr double tolerable_damage = 0.01;
 /// Steps between two rows of block.csv.
 constexpr std::uint64_t block_row_steps = 10;
 
@@ -48,6 +50,10 @@ nlohmann::json Simulation::run() {
   }
   progress_.end_line();
   recorder_->close();
+  if (largest_tied_damage_ > tolerable_damage)
+    warnings_.push_back(number(100.0 * largest_tied_damage_) + " % of the contacts of tied grains slid or broke, more than " +
+                        number(100.0 * tolerable_damage) + " %: the mesh beside them cannot follow. Enlarge coupling.zone, so that the "
+                        "overlap or border lies in ground that stays elastic");
   nlohmann::json result = summary();
   result["wall"]["total"] = std::chrono::duration<double>(Clock::now() - begin).count();
   folder_.write_json("summary.json", result);
@@ -278,12 +284,24 @@ void Simulation::tell_block() {
   dem_->ask<protocol::Ready>(protocol::Prepare{});
 }
 
+/// Share of the contacts of tied grains that slide or were broken.
+double Simulation::tied_damage(const protocol::RunDone& report) {
+  double contacts = 0.0, damaged = 0.0;
+  for (std::size_t i = 0; i < report.counter_names.size(); ++i) {
+    const std::string& name = report.counter_names[i];
+    if (name == "tied_contacts" || name == "tied_broken") contacts += report.counters[i];
+    if (name == "tied_sliding" || name == "tied_broken") damaged += report.counters[i];
+  }
+  return contacts > 0.0 ? damaged / contacts : 0.0;
+}
+
 /// Stops what cannot be trusted: motion that is no number, an interface that has turned too far.
 void Simulation::watch(const scene::Stage& stage, const Advance& advance) {
   for (const auto* report : {&advance.dem, &advance.continuum})
     if (*report && !std::isfinite((*report)->largest_speed))
       throw RunFailed("stage '" + stage.name + "', step " + std::to_string((*report)->step) + ": a velocity is not a number");
   if (!tie_ || !advance.continuum) return;
+  largest_tied_damage_ = std::max(largest_tied_damage_, tied_damage(*advance.dem));
   // the rotation of the interface is at most its motion over half its width
   double half_width = scene::infinity;
   for (int axis = 0; axis < 3; ++axis)
@@ -292,9 +310,10 @@ void Simulation::watch(const scene::Stage& stage, const Advance& advance) {
   if (motion < look_for_rotation * scene_.coupling.rotation_limit * half_width) return;
   const std::vector<double> u = continuum_->fetch("displacement");
   const double rotation = interface_rotation(assembly_.mesh, tie_->rows(), u);
+  largest_rotation_ = std::max(largest_rotation_, rotation);
   if (rotation > scene_.coupling.rotation_limit)
     throw RunFailed("stage '" + stage.name + "': the interface has turned by " + number(rotation) + " rad, beyond coupling.rotation_limit " +
-                    number(scene_.coupling.rotation_limit) + "; linear elements would strain by its square. Enlarge grains.zone so that the interface lies in ground that does not turn");
+                    number(scene_.coupling.rotation_limit) + "; linear elements take it for a strain of " + number(0.5 * rotation * rotation) + ". Enlarge grains.zone so that the interface lies in ground that does not turn");
 }
 
 nlohmann::json Simulation::summary() const {
@@ -318,7 +337,7 @@ nlohmann::json Simulation::summary() const {
   }
   if (tie_) {
     const InterfaceReport& r = tie_->report();
-    s["interface"] = {{"grains", r.grains}, {"rows", r.rows}, {"rank", r.rank}, {"condition", r.condition}, {"merged_rows", r.merged_rows}, {"nonzeros", r.nonzeros}};
+    s["interface"] = {{"grains", r.grains}, {"rows", r.rows}, {"rank", r.rank}, {"condition", r.condition}, {"merged_rows", r.merged_rows}, {"nonzeros", r.nonzeros}, {"largest_rotation", largest_rotation_}, {"largest_damaged_share", largest_tied_damage_}};
   }
   if (last_.dem)
     for (std::size_t i = 0; i < last_.dem->counter_names.size(); ++i) s["counters"][last_.dem->counter_names[i]] = last_.dem->counters[i];

@@ -67,6 +67,7 @@ class Simulation {
   /// Brings everything to where the checkpoint was taken; returns the index of its stage.
   std::size_t restore_checkpoint();
   void watch(const scene::Stage& stage, const Advance& advance);
+  static double tied_damage(const protocol::RunDone& report);
   nlohmann::json summary() const;
 
   const scene::Scene& scene_;
@@ -94,6 +95,8 @@ class Simulation {
   };
   StagePlace at_;
   nlohmann::json resumed_;  ///< null: a run from the start
+  double largest_tied_damage_ = 0.0;
+  double largest_rotation_ = 0.0;  ///< rad, of the interface, where it moved far enough to be looked at
   std::string last_checkpoint_;
   std::chrono::steady_clock::time_point checkpointed_ = std::chrono::steady_clock::now();
   std::optional<PlacedBlock> block_;  ///< once it is released

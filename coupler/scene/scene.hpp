@@ -90,7 +90,7 @@ struct Coupling {
   double weight_floor = 0.01;
   double reach = 0.9;            ///< edge: grains within reach * radius of the border plane are tied
   bool border_weights = false;   ///< edge: contacts across the border count with their share on the grains' side
-  double rotation_limit = 0.05;  ///< rad, largest rotation of the interface before the run stops
+  double rotation_limit = 0.03;  ///< rad, largest rotation of the interface before the run stops
 };
 
 /// What holds or drives one face of the ground, in both media.

@@ -124,6 +124,13 @@ class Models(SystemTest):
         self.assertGreater(len(times), 5)
         self.assertTrue(all(0.8e-3 < b - a < 1.2e-3 for a, b in zip(times, times[1:])), times)
 
+    def test_a_damaged_overlap_is_reported(self):
+        sound = self.run_scene("tiny.json", out="sound")
+        self.assertEqual((sound["warnings"], sound["interface"]["largest_damaged_share"]), ([], 0))
+        weak = self.run_scene("tiny.json", "ground.material=seed_gravel", "faces.zmax.pressure.half_sine.amplitude=300 kPa", out="weak")
+        self.assertGreater(weak["interface"]["largest_damaged_share"], 0.01)
+        self.assertIn("slid or broke", weak["warnings"][0])
+
     def test_two_stages_follow_one_another(self):
         stages = 'stages=[{"name": "still", "damping": 0.7, "steps": 30}, {"name": "free", "steps": 20}]'
         summary = self.run_scene("tiny_lattice.json", stages)
