@@ -227,15 +227,15 @@ void Simulation::run_stage(const scene::Stage& stage) {
                    unbalanced, recorder_->energy().error());
     if (block_) recorder_->block_row(stepper_->time(), *block_, dem_->fetch("block"));
     watch(stage, last_);
+    if (scene_.output.every > 0.0 && stepper_->time() >= next_output_ - 0.5 * dt_) {
+      recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
+      next_output_ += scene_.output.every;
+    }
     const bool stopping = stop_ && *stop_;
     if (stopping || checkpoint_due()) save_checkpoint();
     if (stopping) {
       recorder_->close();
       throw Interrupted("interrupted at step " + std::to_string(stepper_->step()) + ", results up to t = " + number(stepper_->time()) + " s");
-    }
-    if (scene_.output.every > 0.0 && stepper_->time() >= next_output_ - 0.5 * dt_) {
-      recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
-      next_output_ += scene_.output.every;
     }
   }
   if (until_still && !limited && !rested())

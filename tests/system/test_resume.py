@@ -15,7 +15,7 @@ STAGES = [
 ]
 BLOCK = {"side": "0.3 m", "mass": "40 kg", "velocity": "2 m/s", "position": ["0.4 m", "0.4 m"]}
 CHANGES = ["gravity=[\"0\", \"0\", \"-9.81 m/s2\"]", "faces.zmax=free", f"stages={json.dumps(STAGES)}",
-           "output={\"monitor_steps\": 50}", "run.checkpoint_every=0.05 s", "run.energy_tolerance=1"]
+           "output={\"monitor_steps\": 50, \"every\": \"2 ms\"}", "run.checkpoint_every=0.05 s", "run.energy_tolerance=1"]
 
 
 class Resume(SystemTest):
