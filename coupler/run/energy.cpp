@@ -47,8 +47,8 @@ std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& d
   error_ = scale_ > 0.0 ? drift_ / scale_ : 0.0;
   const double larger = std::max(std::fabs(tie_work[0]), std::fabs(tie_work[1]));
   if (larger > 0.0) residual_ = std::fabs(tie_work[0] + tie_work[1]) / larger;
-  columns_.push_back("balance [J]");
-  row.push_back(balance);
+  columns_.insert(columns_.end(), {"balance [J]", "balance error [J]"});
+  row.insert(row.end(), {balance, balance - first_});
   last_ = row;
   return row;
 }

@@ -17,7 +17,8 @@ class EnergyBalance {
  public:
   /// Columns of energy.csv after the time, once the first reports are in.
   std::vector<std::string> columns() const { return columns_; }
-  /// Adds a measurement and returns the row for energy.csv (without time).
+  /// Adds a measurement and returns the row for energy.csv (without time): both ledgers, the balance, and how far it is
+  /// from what it was at the stage's first measurement, errors of earlier stages included.
   std::vector<double> add(const std::optional<protocol::RunDone>& dem, const std::optional<protocol::RunDone>& continuum);
 
   /// The next measurement starts a new stage: a block set free, faces let go and the like bring energy that no ledger

@@ -66,9 +66,9 @@ def energy(run):
     top.axhline(0, color="0.4", linewidth=0.6)
     top.set(ylabel="energy [J]", title=title(run, "Energies, stacked"))
     top.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    balance = next((v for c, v in table.items() if "balance" in split_unit(c)[0]), None)
-    if balance is not None:
-        below.plot(time, (balance - balance[0]) / (scale or 1.0), "k", linewidth=1.0)
+    error = next((v for c, v in table.items() if split_unit(c)[0] == "balance error"), None)
+    if error is not None:
+        below.plot(time, error / (scale or 1.0), "k", linewidth=1.0)
     below.axhline(0, color="0.4", linewidth=0.6)
     below.set(xlabel="time [s]", ylabel="balance error over\nlargest energy [-]")
     return save(figure, run.folder, "energy")

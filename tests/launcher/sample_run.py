@@ -27,6 +27,7 @@ def histories(folder):
     energy["grains friction [J]"] = 850e3 * time / 0.06 * 0.8
     energy["grains loads [J]"] = 5e4 * time / 0.06
     energy["balance [J]"] = 850e3 * (1 + 1e-5 * np.sin(400 * time))
+    energy["balance error [J]"] = energy["balance [J]"] - 850e3
     write_csv(folder / "energy.csv", energy)
     probes = {"time [s]": time}
     for name, size in (("A", 1e-4), ("B", 6e-5)):
