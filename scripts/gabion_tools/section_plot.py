@@ -9,6 +9,7 @@ from gabion_tools.run_data import split_unit
 from gabion_tools.style import label, plt, save
 
 AXES = "xyz"
+FRAME = 0.25  # of the ground's size, shown around it
 EDGES = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
 
 
@@ -62,6 +63,8 @@ class Section:
         if self.empty:
             return
         self.low, self.high = np.min([a.min(axis=0) for a in rest], axis=0), np.max([a.max(axis=0) for a in rest], axis=0)
+        frame = FRAME * (self.high - self.low)
+        frame_low, frame_high = self.low - frame, self.high + frame
         self.axis, self.value = chosen_plane(plane, self.low, self.high)
         self.flat = [a for a in range(3) if a != self.axis]
         parts = [part["displacement"] for part in (self.grains, self.mesh) if len(part.get("displacement", []))]
@@ -77,6 +80,10 @@ class Section:
                 part.setdefault("displacement", np.zeros_like(part[place]))
                 moved = part[place] + self.factor * part["displacement"]
                 self.low, self.high = np.fmin(self.low, moved.min(axis=0)), np.fmax(self.high, moved.max(axis=0))
+        # grains that fly far are counted, not shown
+        places = self.grains.get("position", np.zeros((0, 3))) + self.factor * self.grains.get("displacement", np.zeros((0, 3)))
+        self.beyond = int(np.any((places < frame_low) | (places > frame_high), axis=1).sum())
+        self.low, self.high = np.fmax(self.low, frame_low), np.fmin(self.high, frame_high)
         if self.block:
             self.low = np.fmin(self.low, self.block["vertices"].min(axis=0))
             self.high = np.fmax(self.high, self.block["vertices"].max(axis=0))
@@ -149,6 +156,8 @@ def section(run, plane=None):
     for panel, by_displacement in zip(panels[:, 0], (True, False)):
         cut.draw(figure, panel, by_displacement)
     drawn = "displacements as they are" if cut.factor == 1.0 else f"displacements drawn {cut.factor:g} times larger"
+    if cut.beyond:
+        drawn += f", {cut.beyond} grains beyond the frame"
     where = f"Section at {AXES[cut.axis]} = {cut.value:.4g} m, t = {run.state_times()[-1]:.4g} s"
     panels[0, 0].set_title(title(run, where) + "\n" + drawn)
     return save(figure, run.folder, "section")
