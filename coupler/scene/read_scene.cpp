@@ -31,11 +31,11 @@ std::string hexadecimal(std::uint64_t number) {
   return text;
 }
 
-/// A path in the scene counts from the scene's folder.
+/// A path in the scene counts from the scene's folder; the effective scene, which lies elsewhere, has it whole.
 void resolve_paths(Json& values, const std::filesystem::path& folder, std::vector<SceneProblem>& problems) {
   if (!values["initial"].contains("state")) return;
   Json& path = values["initial"]["state"];
-  const std::filesystem::path resolved = folder / path.get<std::string>();
+  const std::filesystem::path resolved = std::filesystem::absolute(folder / path.get<std::string>()).lexically_normal();
   std::error_code error;
   if (!std::filesystem::is_regular_file(resolved, error))
     problems.push_back({"initial.state", quoted(path.get<std::string>()), "the results.h5 of an earlier run",

@@ -1,10 +1,9 @@
 """gabion resume: a run that was broken off goes on from its checkpoint, in a folder of its own."""
 
-import json
 import re
 from pathlib import Path
 
-from gabion_tools import build, run
+from gabion_tools import build, run, scenes
 from gabion_tools.errors import UserError
 from gabion_tools.places import short
 
@@ -26,7 +25,7 @@ def main(options):
             raise UserError(f"{short(folder)} holds no {needed.name}; runs write checkpoints where "
                             "run.checkpoint_every is set, and when they are interrupted")
     build.ensure(options.yes)
-    model = json.loads(scene.read_text(encoding="utf-8"))["model"]
+    model = scenes.model(scene, [])
     out = (run.prepare(options.out, options.overwrite) if options.out
            else run.free_folder(re.sub(r"-\d+$", "", folder.resolve().name)))
     return run.carry_out(scene, [], model, out, options, ["--resume", str(folder.resolve())])

@@ -8,8 +8,6 @@ import json
 
 import numpy as np
 
-from gabion_tools.errors import Failure
-
 OF_SAMPLE = "sample"  # name of the material that a calibrated run defines
 
 

@@ -68,8 +68,9 @@ class Section:
         self.axis, self.value = chosen_plane(plane, self.low, self.high)
         self.flat = [a for a in range(3) if a != self.axis]
         parts = [part["displacement"] for part in (self.grains, self.mesh) if len(part.get("displacement", []))]
-        motion = np.linalg.norm(np.concatenate(parts or [np.zeros((1, 3))]), axis=1)
-        self.factor = 1.0 if self.block else magnified(np.concatenate(parts or [np.zeros((1, 3))]), (self.high - self.low).max())
+        moved = np.concatenate(parts or [np.zeros((1, 3))])
+        motion = np.linalg.norm(moved, axis=1)
+        self.factor = 1.0 if self.block else magnified(moved, (self.high - self.low).max())
         # a few grains in flight must not take the whole colour scale
         self.largest = np.nanpercentile(motion, 99) if self.block else np.nanmax(motion)
         self.largest = self.largest or np.nanmax(motion) or 1.0

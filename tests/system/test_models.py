@@ -7,7 +7,7 @@ import unittest
 import h5py
 import numpy
 
-from programs import SystemTest
+from programs import SCENARIOS, SystemTest
 
 MODELS = ("dem", "continuum", "bridging", "edge")
 ALWAYS = ("summary.json", "scene.effective.json", "run.log", "monitor.csv", "energy.csv", "probes.csv", "reactions.csv",
@@ -102,6 +102,14 @@ class Models(SystemTest):
                 self.assertEqual(new[f"interface/state_000001/{field}"].shape, (rows, 3))
             # the mesh is strained alike: after one step grains and mesh are still together
             self.assertLess(numpy.abs(new["interface/state_000001/jump"][:]).max(), 1e-9)
+        # a path in a scene counts from the scene's folder, and the effective scene can be run from its own
+        scene = self.folder / "scenes" / "tiny_lattice.json"
+        scene.parent.mkdir()
+        scene.write_text((SCENARIOS / "tiny_lattice.json").read_text())
+        changes[0] = changes[0].replace(str(first), "../first/results.h5")
+        relative = self.run_scene(scene.relative_to(self.folder), *changes, out="relative")
+        again = self.run_scene(self.out / "scene.effective.json", out="again")
+        self.assertEqual(relative["state_hash"], again["state_hash"])
         self.out = self.folder / "third"
         ended = self.ended(self.coupler("tiny_lattice.json", "--check", "--set", 'initial.state="nowhere.h5"'))
         self.assertEqual(ended.status, 2, ended)

@@ -1,9 +1,9 @@
 """A column under its own weight, periodic sideways: settlement of the top and vertical stress against all grains.
 
 Settlement: the probe on the top, an affine fit to the grains within two diameters; the same less that of a level 4.4
-diameters above the base. Stress: mean vertical stress of
-every layer of elements against the weight of the all-grain column above it, largest departure over the stress at the
-base; in the overlap the mesh's weighted stress and that of the grains' weighted contact forces added up. Weight: reaction of the base over the weight of the all-grain column.
+diameters above the base. Stress: mean vertical stress of every layer of elements against the weight of the all-grain
+column above it, largest departure over the stress at the base; in the overlap the mesh's weighted stress and that of
+the grains' weighted contact forces added up. Weight: reaction of the base over the weight of the all-grain column.
 """
 
 import numpy as np

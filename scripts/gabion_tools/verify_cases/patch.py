@@ -29,7 +29,7 @@ def one_step(context, scene, choice, initial, more=None):
     return context.run_scene(scene, {
         **choice, "grains.geometry": "frozen", "faces": "null", "probes": "[]", "gravity": "null",
         "stages": '[{"name": "look", "damping": 0, "steps": 1}]', "initial": json.dumps(initial),
-        "output": '{"monitor_steps": 1, "fields": []}', **(more or {})})
+        "output": '{"monitor_steps": 1}', **(more or {})})
 
 
 def left_over(result, axis=2):
