@@ -73,7 +73,7 @@ def overlays(folder, runs):
         for name, values in run.histories.get("block", {}).items():
             if split_unit(name)[0] == "time":
                 values -= values[0]
-    for column, what in (("penetration", "Penetration of the block"), ("force_filtered", "Force on the block")):
+    for column, what in (("penetration", "Penetration of the block"), ("force_filtered", "Vertical force on the block, mean over 4 ms")):
         yield overlay(folder, runs, "block", "time", column, f"block-{column}", what)
     strain = next((c for c in columns(runs, "stress") if "axial" in c and "strain" in c), None)
     for column in columns(runs, "stress"):
