@@ -10,8 +10,8 @@ namespace gabion::coupler {
 namespace {
 
 constexpr double level_cell = 0.25;   // m, as in the rigid-box reference
-constexpr double corner_slope = 0.70710678118654752;  // rise of a cube's edge over the run, corner down
-constexpr double edge_slope = 1.0;                    // of its faces, edge down
+constexpr double touching_tolerance = 1e-9;  // of the side
+constexpr int most_approaches = 1000;
 
 /// Turns a cube with faces along the axes so that corner, edge or face points down.
 Eigen::Matrix3d attitude(const std::string& tip) {
@@ -20,9 +20,38 @@ Eigen::Matrix3d attitude(const std::string& tip) {
   return Eigen::Quaterniond::FromTwoVectors(lowest.normalized(), -Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
-/// Height of the lowest point of a block whose surface rises with `slope` at distance `run` from it and touches
-/// a sphere of radius r centred at height z.
-double touching_height(double z, double r, double run, double slope) { return z + r * std::sqrt(1.0 + slope * slope) - slope * run; }
+/// Distance of a point from a cube of the given half side about the origin, m; negative inside.
+double distance_from_cube(const Eigen::Vector3d& x, double half_side) {
+  const Eigen::Vector3d beyond = x.cwiseAbs() - Eigen::Vector3d::Constant(half_side);
+  return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
+}
+
+/// Height of the centre at which a cube that comes down on the grains first touches one. The smallest gap is a distance
+/// that the cube can go down without meeting a grain (sphere tracing: Hart 1996).
+double touching_height(const scene::Block& block, const Eigen::Matrix3d& turn, const GrainSet& grains) {
+  const double half = 0.5 * block.side, reach = half * std::sqrt(3.0);
+  std::vector<std::size_t> near;
+  double height = -scene::infinity, floor = scene::infinity;
+  for (std::size_t g = 0; g < grains.position.size(); ++g) {
+    const Point& x = grains.position[g];
+    const double r = grains.radius[g];
+    if (std::hypot(x[0] - block.position[0], x[1] - block.position[1]) > reach + r) continue;
+    near.push_back(g);
+    height = std::max(height, x[2] + r + reach);
+    floor = std::min(floor, x[2] - r - reach);
+  }
+  for (int k = 0; k < most_approaches && height > floor; ++k) {
+    double gap = scene::infinity;
+    for (const std::size_t g : near) {
+      const Point& x = grains.position[g];
+      const Eigen::Vector3d from(x[0] - block.position[0], x[1] - block.position[1], x[2] - height);
+      gap = std::min(gap, distance_from_cube(turn.transpose() * from, half) - grains.radius[g]);
+    }
+    height -= gap;
+    if (gap < touching_tolerance * block.side) return height;
+  }
+  throw std::runtime_error("block.position: no grain lies under the block; move it over grains.zone");
+}
 
 }  // namespace
 
@@ -60,19 +89,7 @@ PlacedBlock place_block(const scene::Block& block, const scene::Box& ground, con
   }
   PlacedBlock placed;
   double height = block.position[2];
-  if (block.touching) {
-    const double slope = block.tip == "face" ? 0.0 : block.tip == "edge" ? edge_slope : corner_slope;
-    double tip = -scene::infinity;
-    for (std::size_t g = 0; g < grains.position.size(); ++g) {
-      const Point& x = grains.position[g];
-      const double dx = x[0] - block.position[0], dy = x[1] - block.position[1];
-      const double run = block.tip == "edge" ? std::fabs(dy) : std::hypot(dx, dy);
-      if (std::hypot(dx, dy) > block.side) continue;
-      tip = std::max(tip, touching_height(x[2], grains.radius[g], block.tip == "face" ? 0.0 : run, slope));
-    }
-    if (!std::isfinite(tip)) throw std::runtime_error("block.position: no grain lies under the block; move it over grains.zone");
-    height = tip - lowest;
-  }
+  if (block.touching) height = touching_height(block, turn, grains);
   for (const Eigen::Vector3d& v : vertices) placed.vertices.push_back({block.position[0] + v[0], block.position[1] + v[1], height + v[2]});
   placed.face_ptr.push_back(0);
   for (const auto& face : faces) {

@@ -182,7 +182,8 @@ void Recorder::block_shape(const PlacedBlock& block) {
   results_.write_block_geometry({block_vertices_, block.face_ptr, block.face_vertices});
 }
 
-void Recorder::block_row(double time, const PlacedBlock& block, const std::vector<double>& state) {
+void Recorder::block_row(double time, const PlacedBlock& block, const std::vector<double>& state, const std::vector<double>& forces,
+                         std::uint64_t steps) {
   constexpr std::size_t velocity = 3, spin = 10, force = 13, torque = 16, corners = 19;
   block_vertices_.assign(state.begin() + corners, state.end());
   double lowest = scene::infinity;
@@ -190,10 +191,21 @@ void Recorder::block_row(double time, const PlacedBlock& block, const std::vecto
   if (!block_)
     block_ = std::make_unique<History>(folder_.history(
         "block.csv", {"time [s]", "penetration [m]", "velocity.x [m/s]", "velocity.y [m/s]", "velocity.z [m/s]", "force.x [N]", "force.y [N]",
-                      "force.z [N]", "spin.x [rad/s]", "spin.y [rad/s]", "spin.z [rad/s]", "torque.x [N m]", "torque.y [N m]", "torque.z [N m]"}));
-  std::vector<double> row{time, block.surface_level - lowest};
+                      "force.z [N]", "spin.x [rad/s]", "spin.y [rad/s]", "spin.z [rad/s]", "torque.x [N m]", "torque.y [N m]", "torque.z [N m]", "force_mean.z [N]",
+                      "force_largest.z [N]"}));
+  // of the steps since the row before
+  const std::size_t count = std::min<std::size_t>(steps, forces.size() / 3);
+  double sum = 0.0, largest = 0.0;
+  for (std::size_t k = forces.size() - 3 * count; k < forces.size(); k += 3) {
+    sum += forces[k + 2];
+    if (std::fabs(forces[k + 2]) > std::fabs(largest)) largest = forces[k + 2];
+  }
+  const double mean = sum / static_cast<double>(std::max<std::size_t>(1, count)), penetration = block.surface_level - lowest;
+  impact_.add(time, penetration, -state[velocity + 2], mean, largest);
+  std::vector<double> row{time, penetration};
   for (const std::size_t start : {velocity, force, spin, torque})
     for (std::size_t axis = 0; axis < 3; ++axis) row.push_back(state[start + axis]);
+  row.insert(row.end(), {mean, largest});
   block_->append(row);
 }
 
@@ -285,12 +297,19 @@ nlohmann::json Recorder::figures() const {
   nlohmann::json figures = nlohmann::json::object();
   for (const auto& [name, f] : probe_figures_)
     figures[name] = {{"largest_x", f[0]}, {"largest_y", f[1]}, {"largest_z", f[2]}, {"last_z", f[3]}};
+  if (!impact_.empty()) {
+    const scene::Block& block = *scene_.block;
+    double square = 0.0;
+    for (const double v : block.velocity) square += v * v;
+    figures["block"] = impact_.figures(block_release_, block.mass, -block.velocity[2], 0.5 * block.mass * square, -scene_.gravity[2]);
+  }
   return figures;
 }
 
 nlohmann::json Recorder::memory() const {
   return {{"energy", energy_.state()}, {"zeroed_grains", zeroed_grains_}, {"zeroed_nodes", zeroed_nodes_}, {"zeroed_probes", zeroed_probes_},
-          {"zero_probes", zero_probes_}, {"next_probe", next_probe_}, {"probe_figures", probe_figures_}};
+          {"zero_probes", zero_probes_}, {"next_probe", next_probe_}, {"probe_figures", probe_figures_},
+          {"impact", impact_.memory()}, {"block_release", block_release_}};
 }
 
 void Recorder::remember(const nlohmann::json& memory) {
@@ -301,6 +320,8 @@ void Recorder::remember(const nlohmann::json& memory) {
   memory.at("zero_probes").get_to(zero_probes_);
   memory.at("next_probe").get_to(next_probe_);
   memory.at("probe_figures").get_to(probe_figures_);
+  impact_.remember(memory.at("impact"));
+  memory.at("block_release").get_to(block_release_);
 }
 
 void Recorder::close() {

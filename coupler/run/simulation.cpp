@@ -17,8 +17,9 @@ using Clock = std::chrono::steady_clock;
 constexpr double look_for_rotation = 0.1;
 /// Share of sliding or broken contacts among the tied grains above which the run warns.
 constexpr double tolerable_damage = 0.01;
-/// Steps between two rows of block.csv.
-constexpr std::uint64_t block_row_steps = 10;
+/// Time between two rows of block.csv, s, and the steps between them at most.
+constexpr double block_row_time = 1e-3;
+constexpr double most_block_row_steps = 50;
 
 std::string hex(std::uint64_t value) {
   char text[24];
@@ -214,7 +215,7 @@ void Simulation::run_stage(const scene::Stage& stage) {
   while (taken < most && !rested()) {
     std::uint64_t chunk = std::min<std::uint64_t>(std::max<std::uint64_t>(1, scene_.output.monitor_steps), most - taken);
     if (taken == 0) chunk = 1;  // the stage's own first balance
-    if (block_) chunk = std::min(chunk, block_row_steps);
+    if (block_) chunk = std::min(chunk, static_cast<std::uint64_t>(std::clamp(block_row_time / dt_, 1.0, most_block_row_steps)));
     if (scene_.output.every > 0.0)
       chunk = std::min(chunk, std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil((next_output_ - stepper_->time()) / dt_ - 1e-6))));
     last_ = stepper_->advance(chunk, dt_, stage.damping, scene_.run.measure_energy);
@@ -225,7 +226,7 @@ void Simulation::run_stage(const scene::Stage& stage) {
     recorder_->monitor(stage.name, stepper_->step(), stepper_->time(), dt_, last_, progress_.steps_per_second());
     progress_.show(stage.name, stepper_->step(), stepper_->time(), limited ? static_cast<double>(taken) / static_cast<double>(most) : -1.0,
                    unbalanced, recorder_->energy().error());
-    if (block_) recorder_->block_row(stepper_->time(), *block_, dem_->fetch("block"));
+    if (block_) recorder_->block_row(stepper_->time(), *block_, dem_->fetch("block"), dem_->fetch("block_forces"), chunk);
     watch(stage, last_);
     if (scene_.output.every > 0.0 && stepper_->time() >= next_output_ - 0.5 * dt_) {
       recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
@@ -265,6 +266,7 @@ void Simulation::release_block() {
     for (int axis = 0; axis < 3; ++axis) present.position[g][axis] += moved[3 * g + static_cast<std::size_t>(axis)];
   block_ = placed_block(present);
   tell_block();
+  recorder_->block_released(stepper_->time());
   log_("block: lowest corner at " + number(block_->lowest) + " m, mean surface level " + number(block_->surface_level) + " m");
 }
 

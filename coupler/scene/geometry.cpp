@@ -66,6 +66,10 @@ std::string to_string(Model model) {
   return names[static_cast<int>(model)];
 }
 
+bool is_lattice(const Grains& grains) {
+  return grains.packing == "fcc" || grains.packing == "sc";
+}
+
 double mean_diameter(const Grains& grains) {
   const auto& r = grains.radius;
   if (r.empty()) return 0.0;
