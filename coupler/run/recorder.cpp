@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace gabion::coupler {
 
@@ -216,6 +217,7 @@ void Recorder::state(const std::string& stage, std::uint64_t step, double time, 
   std::vector<double> u_grains, u_nodes;
   if (dem) {
     u_grains = dem->fetch("displacement");
+    count_ejecta(u_grains);
     results_.grain_field("displacement", less(u_grains, zeroed_grains_), 3, "m");
     if (!zeroed_grains_.empty()) results_.grain_field("zeroed_displacement", zeroed_grains_, 3, "m");
     for (const FieldOf& f : grain_fields) results_.grain_field(f.name, dem->fetch(f.name), f.components, f.unit);
@@ -233,6 +235,20 @@ void Recorder::state(const std::string& stage, std::uint64_t step, double time, 
   if (tie) interface_fields(dt, *continuum, *tie, u_grains, u_nodes);
   if (!block_vertices_.empty()) results_.block_vertices(block_vertices_);
   results_.end_state();
+}
+
+/// Ejected: a grain of which nothing is within a mean diameter of the surface.
+void Recorder::count_ejecta(const std::vector<double>& displacement) {
+  if (thrown_.empty()) return;
+  const GrainSet& grains = assembly_.grains;
+  const double mean_diameter = 2.0 * std::accumulate(grains.radius.begin(), grains.radius.end(), 0.0) / static_cast<double>(thrown_.size());
+  in_flight_ = 0;
+  for (std::size_t g = 0; g < thrown_.size(); ++g) {
+    const double height = grains.position[g][2] + displacement[3 * g + 2] - surface_level_;
+    if (height - grains.radius[g] < mean_diameter) continue;
+    thrown_[g] = 1;
+    ++in_flight_;
+  }
 }
 
 bool Recorder::wants(const char* field) const {
@@ -302,6 +318,7 @@ nlohmann::json Recorder::figures() const {
     double square = 0.0;
     for (const double v : block.velocity) square += v * v;
     figures["block"] = impact_.figures(block_release_, block.mass, -block.velocity[2], 0.5 * block.mass * square, -scene_.gravity[2]);
+    figures["ejecta"] = {{"thrown", std::count(thrown_.begin(), thrown_.end(), 1)}, {"in_flight_at_end", in_flight_}};
   }
   return figures;
 }
@@ -309,7 +326,8 @@ nlohmann::json Recorder::figures() const {
 nlohmann::json Recorder::memory() const {
   return {{"energy", energy_.state()}, {"zeroed_grains", zeroed_grains_}, {"zeroed_nodes", zeroed_nodes_}, {"zeroed_probes", zeroed_probes_},
           {"zero_probes", zero_probes_}, {"next_probe", next_probe_}, {"probe_figures", probe_figures_},
-          {"impact", impact_.memory()}, {"block_release", block_release_}};
+          {"impact", impact_.memory()}, {"block_release", block_release_},
+          {"surface_level", surface_level_}, {"thrown", thrown_}};
 }
 
 void Recorder::remember(const nlohmann::json& memory) {
@@ -322,6 +340,8 @@ void Recorder::remember(const nlohmann::json& memory) {
   memory.at("probe_figures").get_to(probe_figures_);
   impact_.remember(memory.at("impact"));
   memory.at("block_release").get_to(block_release_);
+  memory.at("surface_level").get_to(surface_level_);
+  memory.at("thrown").get_to(thrown_);
 }
 
 void Recorder::close() {

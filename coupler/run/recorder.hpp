@@ -40,8 +40,12 @@ class Recorder {
   /// A row of block.csv. state: field "block" of the engine; forces: field "block_forces", of which the last steps count.
   void block_row(double time, const PlacedBlock& block, const std::vector<double>& state, const std::vector<double>& forces,
                  std::uint64_t steps);
-  /// The block is released at this time.
-  void block_released(double time) { block_release_ = time; }
+  /// The block is released at this time, s, on ground whose mean surface lies at level, m.
+  void block_released(double time, double level) {
+    block_release_ = time;
+    surface_level_ = level;
+    thrown_.assign(assembly_.grains.position.size(), 0);
+  }
   /// Step of the last stored state.
   std::uint64_t last_state_step() const { return last_state_step_; }
 
@@ -62,6 +66,7 @@ class Recorder {
   void interface_fields(double dt, EngineLink& continuum, const InterfaceTie& tie, const std::vector<double>& u_grains,
                         const std::vector<double>& u_nodes);
   bool wants(const char* field) const;
+  void count_ejecta(const std::vector<double>& displacement);
 
   RunFolder& folder_;
   const scene::Scene& scene_;
@@ -77,6 +82,9 @@ class Recorder {
   double next_probe_ = 0.0;
   ImpactFigures impact_;
   double block_release_ = 0.0;          ///< s
+  double surface_level_ = 0.0;          ///< at the release, m
+  std::vector<std::uint8_t> thrown_;    ///< grains seen above the surface since the release; empty before
+  std::size_t in_flight_ = 0;           ///< of the last state
   std::vector<double> block_vertices_;  ///< present corners, m; before its release where it would touch the grains
   std::map<std::string, std::array<double, 4>> probe_figures_;  ///< largest |component| 3, last z
 };

@@ -266,7 +266,7 @@ void Simulation::release_block() {
     for (int axis = 0; axis < 3; ++axis) present.position[g][axis] += moved[3 * g + static_cast<std::size_t>(axis)];
   block_ = placed_block(present);
   tell_block();
-  recorder_->block_released(stepper_->time());
+  recorder_->block_released(stepper_->time(), block_->surface_level);
   log_("block: lowest corner at " + number(block_->lowest) + " m, mean surface level " + number(block_->surface_level) + " m");
 }
 

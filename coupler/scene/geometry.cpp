@@ -35,7 +35,7 @@ double cell_over_radius(const std::string& packing) {
 
 double depth_below_centre(const Block& block) {
   const double half = block.side / 2;
-  if (block.tip == "face") return half;
+  if (block.tip == "face" || block.shape == "sphere") return half;
   return half * std::sqrt(block.tip == "edge" ? 2.0 : 3.0);
 }
 

@@ -106,8 +106,8 @@ struct Face {
 using Faces = std::array<Face, 6>;
 
 struct Block {
-  std::string shape = "cube";
-  double side = 0.0;         ///< m
+  std::string shape = "cube";  ///< cube, sphere
+  double side = 0.0;         ///< m, edge or diameter
   double mass = 0.0;         ///< kg
   std::string tip = "down";  ///< down (corner), edge, face
   Point position{};          ///< centre in x, y; z is set so that the block touches the ground

@@ -5,13 +5,13 @@ import numpy as np
 from gabion_tools.history_plots import title
 from gabion_tools.style import WIDE, plt, save
 
-CELL = 0.25   # m, as the mean surface level is measured
-FLYING = 0.5  # m above its surroundings: a grain in flight is no surface
+CELL, CELL_DIAMETERS = 0.25, 1.5  # m and mean diameters: the smaller one, as the mean surface level is measured
+FLYING = 3.0  # mean diameters above the ground: a grain in flight is no surface
 
 
-def surface(position, radius, low, high):
-    """(cell centres, highest grain top in each cell), cells of CELL; nan where a cell has no grain."""
-    count = np.maximum(1, ((high - low) / CELL).astype(int))
+def surface(position, radius, low, high, size):
+    """(cell centres, highest grain top in each cell of that size); nan where a cell has no grain."""
+    count = np.maximum(1, ((high - low) / size).astype(int))
     cell = ((position[:, :2] - low) / (high - low) * count).astype(int)
     inside = np.all((cell >= 0) & (cell < count), axis=1)
     top = np.full(count, -np.inf)
@@ -28,12 +28,6 @@ def profile(centres, top, axis, edges):
     return np.array([np.percentile(ring, [50, 25, 75]) if len(ring) else [np.nan] * 3 for ring in rings])
 
 
-def settled(position, displacement, radius, level):
-    """Grains that lie on the ground or in it: not far above the level that it had."""
-    here = position + displacement
-    return here[:, 2] - radius < level + FLYING
-
-
 def crater(run):
     """Height of the surface against the distance from the block's axis, first and last state."""
     grains, block = run.state("grains"), run.state("block")
@@ -42,15 +36,17 @@ def crater(run):
     first = run.state("grains", 0)
     axis = run.state("block", 0)["vertices"].mean(axis=0)[:2]
     low, high = grains["position"][:, :2].min(axis=0), grains["position"][:, :2].max(axis=0)
-    edges = np.arange(0.0, 0.5 * (high - low).min(), CELL)
+    diameter = 2 * grains["radius"].mean()
+    size = min(CELL, CELL_DIAMETERS * diameter)
+    edges = np.arange(0.0, 0.5 * (high - low).min(), size)
     middle = 0.5 * (edges[:-1] + edges[1:])
     figure, panel = plt.subplots(figsize=WIDE)
     level = None
     for state, colour, name in ((first, "0.5", "before"), (grains, "#d62728", "after")):
         moved = state.get("displacement", np.zeros_like(grains["position"]))
         here = grains["position"] + moved
-        keep = np.ones(len(here), bool) if level is None else settled(grains["position"], moved, grains["radius"], level)
-        centres, top = surface(here[keep], grains["radius"][keep], low, high)
+        keep = np.ones(len(here), bool) if level is None else here[:, 2] - grains["radius"] < level + FLYING * diameter
+        centres, top = surface(here[keep], grains["radius"][keep], low, high, size)
         if level is None:
             level = np.nanmean(top)
         median, lower, upper = profile(centres, top, axis, edges).T

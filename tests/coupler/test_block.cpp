@@ -78,3 +78,26 @@ TEST_CASE("no grain is cut, and one is touched") {
 TEST_CASE("a block beside the grains is refused") {
   CHECK_THROWS_WITH(place_block(cube("down"), ground, one_grain(5, 0)), Catch::Contains("no grain lies under the block"));
 }
+
+TEST_CASE("a sphere is a closed polyhedron of its volume") {
+  scene::Block block = cube("down");
+  block.shape = "sphere";
+  const PlacedBlock placed = place_block(block, ground, one_grain(0.4, 0.3));
+  REQUIRE(placed.face_ptr.size() == 321);
+  double volume = 0.0;
+  Point centre{};
+  for (const Point& v : placed.vertices)
+    for (int axis = 0; axis < 3; ++axis) centre[axis] += v[axis] / static_cast<double>(placed.vertices.size());
+  for (std::size_t f = 0; f < 320; ++f) {
+    const auto at = [&](int k) {
+      Point x = placed.vertices[static_cast<std::size_t>(placed.face_vertices[3 * f + static_cast<std::size_t>(k)])];
+      for (int axis = 0; axis < 3; ++axis) x[axis] -= centre[axis];
+      return x;
+    };
+    const Point a = at(0), b = at(1), c = at(2);
+    volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6.0;
+  }
+  CHECK(volume == Approx(4.0 / 3.0 * std::acos(-1.0)).epsilon(1e-9));
+  // touches the grain: distance of the centres is the sum of the radii
+  CHECK(std::hypot(0.4, 0.3, centre[2]) == Approx(1.0 + radius).epsilon(1e-8));
+}
