@@ -12,6 +12,7 @@ namespace gabion::coupler {
 namespace {
 
 constexpr double level_cell = 0.25;           // m, as in the rigid-box reference
+constexpr double level_sides = 2.0;           // of the block: the square round it that counts, full of grains in every model
 constexpr double level_cell_diameters = 1.5;  // finer grains: cells as large beside them as in that reference
 constexpr int sphere_refinements = 2;         // of an icosahedron: 320 faces
 constexpr double touching_tolerance = 1e-9;  // of the side
@@ -131,7 +132,7 @@ double touching_height(const scene::Block& block, const Eigen::Matrix3d& turn, c
 
 }  // namespace
 
-double mean_surface_level(const scene::Box& ground, const GrainSet& grains) {
+double mean_surface_level(const scene::Box& ground, const GrainSet& grains, const scene::Block& block) {
   double sum_of_radii = 0.0;
   for (const double r : grains.radius) sum_of_radii += r;
   const double cell = std::min(level_cell, level_cell_diameters * 2.0 * sum_of_radii / static_cast<double>(grains.radius.size()));
@@ -148,8 +149,13 @@ double mean_surface_level(const scene::Box& ground, const GrainSet& grains) {
   }
   double sum = 0.0, count = 0.0;
   const double deep = 0.5 * (ground.lo[2] + ground.hi[2]);
-  for (const double h : top)
-    if (h > deep) {
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      const double x = ground.lo[0] + (i + 0.5) * (ground.hi[0] - ground.lo[0]) / nx;
+      const double y = ground.lo[1] + (j + 0.5) * (ground.hi[1] - ground.lo[1]) / ny;
+      const double h = top[static_cast<std::size_t>(j) * nx + i];
+      const double away = std::max(std::fabs(x - block.position[0]), std::fabs(y - block.position[1]));
+      if (away > level_sides * block.side || h <= deep) continue;
       sum += h;
       count += 1.0;
     }
@@ -176,7 +182,7 @@ PlacedBlock place_block(const scene::Block& block, const scene::Box& ground, con
     placed.face_ptr.push_back(static_cast<std::int32_t>(placed.face_vertices.size()));
   }
   placed.lowest = height + lowest;
-  placed.surface_level = mean_surface_level(ground, grains);
+  placed.surface_level = mean_surface_level(ground, grains, block);
   return placed;
 }
 
