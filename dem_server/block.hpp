@@ -58,9 +58,9 @@ class Block {
   std::vector<double> momentum() const;
   double gravity_energy(Vec gravity) const;  ///< -M g.(x - x0), J
 
-  /// Springs for the stable step of the grains, and the highest frequency squared of the block itself:
+  /// Springs for the stable step of the grains, and what the block itself has, see Spectra:
   /// |g - b|^2 <= (1 + split)|g|^2 + (1 + 1/split)|b|^2 decouples the two on the safe side.
-  double add_springs(const Grains& grains, double near, std::vector<SurfaceSpring>& springs) const;
+  Spectra add_springs(const Grains& grains, double near, std::vector<SurfaceSpring>& springs) const;
 
   /// position 3, velocity 3, quaternion 4, spin 3, force 3, torque 3, then the corners 3 each.
   std::vector<double> state() const;
@@ -68,7 +68,7 @@ class Block {
   VecField recent_forces() const;
   static constexpr std::size_t remembered_forces = 64;
   std::vector<SurfaceContact> contacts;  ///< sorted by grain
-  double friction_work = 0.0;            ///< J
+  ContactLosses losses;
   engine::Work damping_work;             ///< J
 
   /// Numbers that a checkpoint has to keep, apart from contacts and sums.

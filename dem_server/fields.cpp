@@ -100,6 +100,9 @@ void DemEngine::set_field(const std::string& name, std::span<const double> value
   finish_last_step();
   VecField& field = *found->second;
   for (std::size_t i = 0; i < grains_.size(); ++i) field[i] = vec(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+  if (&field == &rotation_.spin)
+    for (std::size_t i = 0; i < grains_.size(); ++i)
+      if (!grains_.material_of(i).rotates) field[i] = Vec{};
   const bool moves = found->second == &motion.displacement || found->second == &rotation_.angle;
   if (moves && contact_options_.geometry == Geometry::updated)
     contact_.springs_from_displacements(motion.displacement, rotation_.angle);

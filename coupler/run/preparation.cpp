@@ -97,9 +97,15 @@ protocol::GrainMaterials grain_materials(const std::vector<scene::Material>& mat
     m.friction.data.push_back(material.friction);
     m.normal_strength.data.push_back(material.normal_strength);
     m.shear_strength.data.push_back(material.shear_strength);
+    m.rolling_stiffness.data.push_back(material.rolling_stiffness);
+    m.rolling_friction.data.push_back(material.rolling_friction);
+    m.restitution.data.push_back(material.restitution);
+    m.rotation.data.push_back(material.rotates ? 1 : 0);
   }
-  for (auto* field : {&m.normal_stiffness, &m.shear_stiffness, &m.density, &m.friction, &m.normal_strength, &m.shear_strength})
+  for (auto* field : {&m.normal_stiffness, &m.shear_stiffness, &m.density, &m.friction, &m.normal_strength, &m.shear_strength,
+                      &m.rolling_stiffness, &m.rolling_friction, &m.restitution})
     field->set_shape(std::array<std::uint64_t, 1>{field->data.size()});
+  m.rotation.set_shape(std::array<std::uint64_t, 1>{m.rotation.data.size()});
   return m;
 }
 

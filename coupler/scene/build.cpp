@@ -42,6 +42,10 @@ Material material(const std::string& name, const Json& m) {
           .friction = m["friction"],
           .normal_strength = m["normal_strength"],
           .shear_strength = m["shear_strength"],
+          .rolling_stiffness = m["rolling_stiffness"],
+          .rolling_friction = m["rolling_friction"],
+          .restitution = m["restitution"],
+          .rotates = m["rotation"] == "free",
           .young = optional<double>(m, "young"),
           .poisson = optional<double>(m, "poisson"),
           .bulk_density = optional<double>(m, "bulk_density")};

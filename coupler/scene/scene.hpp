@@ -38,6 +38,10 @@ struct Material {
   double friction = infinity;         ///< Coulomb coefficient
   double normal_strength = infinity;  ///< N/m2, over min(r1,r2)^2
   double shear_strength = infinity;   ///< N/m2
+  double rolling_stiffness = 0.0;     ///< k_r over k_s r1 r2
+  double rolling_friction = 0.0;      ///< largest rolling moment over min(r1,r2) times the normal force
+  double restitution = 1.0;
+  bool rotates = true;
   // continuum; absent: measured on the packing
   std::optional<double> young;         ///< Pa
   std::optional<double> poisson;       ///< -
