@@ -12,12 +12,12 @@ Clumped DemEngine::make_clumps(const ClumpRequest& request) {
   if (grains_.size() == 0) throw RequestError("CLUMPS", "there are no grains", "send GRAINS first");
   for (std::size_t m = 0; m < request.sizes.size(); ++m)
     if (request.sizes[m] < 1)
-      throw RequestError("CLUMPS sizes",
+      throw RequestError("CLUMPS clump_size",
                          "material " + std::to_string(m) + " has clumps of " + std::to_string(request.sizes[m]),
                          "send 1 for single spheres, or more");
   for (const std::int32_t m : grains_.material)
     if (m < 0 || static_cast<std::size_t>(m) >= request.sizes.size())
-      throw RequestError("CLUMPS sizes", "there is none for material " + std::to_string(m),
+      throw RequestError("CLUMPS clump_size", "there is none for material " + std::to_string(m),
                          "send one size for every material that grains use");
   for (const std::int32_t g : request.single)
     if (g < 0 || static_cast<std::size_t>(g) >= grains_.size())

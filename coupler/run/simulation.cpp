@@ -81,7 +81,7 @@ void Simulation::prepare() {
   if (!assembly_.has_grains) dem_ = nullptr;
   if (!assembly_.has_mesh) continuum_ = nullptr;
   if (dem_) {
-    const protocol::Ready ready = configure_dem(scene_, assembly_, *dem_);
+    const protocol::Ready ready = configure_dem(scene_, assembly_, *dem_, log_);
     grain_mass_ = ready.mass.data;
     for (std::size_t g = 0; g < grain_mass_.size(); ++g) grain_weights_.push_back(grain_mass_[g] / ready.plain_mass[g]);
   }

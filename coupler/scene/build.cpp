@@ -42,6 +42,7 @@ Material material(const std::string& name, const Json& m) {
           .friction = m["friction"],
           .normal_strength = m["normal_strength"],
           .shear_strength = m["shear_strength"],
+          .clump_size = m["clump_size"],
           .young = optional<double>(m, "young"),
           .poisson = optional<double>(m, "poisson"),
           .bulk_density = optional<double>(m, "bulk_density")};

@@ -38,6 +38,7 @@ struct Material {
   double friction = infinity;         ///< Coulomb coefficient
   double normal_strength = infinity;  ///< N/m2, over min(r1,r2)^2
   double shear_strength = infinity;   ///< N/m2
+  int clump_size = 1;                 ///< grains joined to one rigid clump; 1: single spheres
   // continuum; absent: measured on the packing
   std::optional<double> young;         ///< Pa
   std::optional<double> poisson;       ///< -
