@@ -27,13 +27,18 @@ Image sum_of(const Image& a, const Image& b) {
 }
 
 Image opposite(const Image& a) {
-  return sum_of({}, {static_cast<std::int8_t>(-a[0]), static_cast<std::int8_t>(-a[1]), static_cast<std::int8_t>(-a[2])});
+  return sum_of({},
+                {static_cast<std::int8_t>(-a[0]), static_cast<std::int8_t>(-a[1]), static_cast<std::int8_t>(-a[2])});
 }
 
 class Grouper {
  public:
   Grouper(const Grains& grains, const VecField& position, const Domain& domain, const ClumpRequest& request)
-      : grains_(grains), x_(position), domain_(domain), request_(request), clump_of_(grains.size(), none),
+      : grains_(grains),
+        x_(position),
+        domain_(domain),
+        request_(request),
+        clump_of_(grains.size(), none),
         near_(grains.size()) {
     wanted_.resize(grains.size());
     for (std::size_t i = 0; i < wanted_.size(); ++i) wanted_[i] = request.sizes[grains.material[i]];
@@ -69,7 +74,8 @@ class Grouper {
     constexpr double slack = 1e-9;
     const double reach = request_.gap + slack;
     for (const Pair& p : find_pairs(x_, grains_.radius, 2.0 * reach * largest, domain_)) {
-      if (p.i == p.j || wanted_[p.i] < 2 || wanted_[p.j] < 2 || grains_.material[p.i] != grains_.material[p.j]) continue;
+      if (p.i == p.j || wanted_[p.i] < 2 || wanted_[p.j] < 2 || grains_.material[p.i] != grains_.material[p.j])
+        continue;
       const double apart = (1.0 + reach) * (grains_.radius[p.i] + grains_.radius[p.j]);
       if (norm(x_[p.j] - x_[p.i] + domain_.offset(p.image)) > apart) continue;
       near_[p.i].push_back({p.j, p.image});

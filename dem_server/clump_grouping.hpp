@@ -18,9 +18,9 @@ namespace gabion::dem {
 
 /// Clumps of two spheres or more, one after another; members in the order in which they joined.
 struct ClumpGrouping {
-  std::vector<std::int32_t> start{0};            ///< members of clump b: [start[b], start[b+1])
-  std::vector<std::int32_t> grain;               ///< of each member
-  std::vector<std::array<std::int8_t, 3>> image; ///< of each member, in periods from the place of its grain
+  std::vector<std::int32_t> start{0};             ///< members of clump b: [start[b], start[b+1])
+  std::vector<std::int32_t> grain;                ///< of each member
+  std::vector<std::array<std::int8_t, 3>> image;  ///< of each member, in periods from the place of its grain
 
   std::size_t size() const { return start.size() - 1; }
 };

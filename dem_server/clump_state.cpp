@@ -78,7 +78,8 @@ void Clumps::build(const Domain& domain, engine::Motion& motion, Rotation& rotat
     for (std::int32_t k = start_[b]; k < start_[b + 1]; ++k) {
       const Vec s = offset_[k] = place(k) - near - middle;
       const std::int32_t i = grain_[k];
-      inertia += (motion.mass[i] * dot(s, s) + rotation.inertia[i]) * Matrix3d::Identity() - motion.mass[i] * outer(s, s);
+      inertia +=
+          (motion.mass[i] * dot(s, s) + rotation.inertia[i]) * Matrix3d::Identity() - motion.mass[i] * outer(s, s);
     }
     inertia_[b] = columns_of(inertia);
     inverse_[b] = columns_of(inertia.inverse());
@@ -114,7 +115,8 @@ void Clumps::take_displacement(engine::Motion& motion) {
     }
     // members in a line do not show a turn about it: none is taken
     constexpr double thin = 1e-9;
-    const Eigen::Vector3d widths = Eigen::SelfAdjointEigenSolver<Matrix3d>(spread, Eigen::EigenvaluesOnly).eigenvalues();
+    const Eigen::Vector3d widths =
+        Eigen::SelfAdjointEigenSolver<Matrix3d>(spread, Eigen::EigenvaluesOnly).eigenvalues();
     if (widths(1) < thin * widths(2)) fit += thin * widths(2) * Matrix3d::Identity();
     bodies[b].displacement = mean;
     bodies[b].attitude = rigid_shift ? Quaternion{1.0, 0.0, 0.0, 0.0} : best_rotation(fit);

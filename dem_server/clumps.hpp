@@ -84,10 +84,10 @@ class Clumps {
 
   /// What a checkpoint has to keep.
   struct Body {
-    Vec displacement{};  ///< of the centre of mass, m
-    Vec velocity{};      ///< m/s
-    Vec momentum{};      ///< angular, kg m2/s
-    Vec spin{};          ///< of the half step that momentum belongs to, rad/s
+    Vec displacement{};                       ///< of the centre of mass, m
+    Vec velocity{};                           ///< m/s
+    Vec momentum{};                           ///< angular, kg m2/s
+    Vec spin{};                               ///< of the half step that momentum belongs to, rad/s
     Quaternion attitude{1.0, 0.0, 0.0, 0.0};  ///< R, from rest
   };
   std::vector<Body> bodies;
@@ -115,8 +115,8 @@ class Clumps {
   VecField offset_;                               ///< s_i, m
   VecField turn_, next_turn_;                     ///< (R - 1) s_i at t_n and t_(n+1), m
   std::vector<double> mass_;
-  VecField centre_;                                     ///< of mass at rest, m
-  std::vector<std::array<Vec, 3>> inertia_, inverse_;   ///< J and its inverse, by columns
+  VecField centre_;                                    ///< of mass at rest, m
+  std::vector<std::array<Vec, 3>> inertia_, inverse_;  ///< J and its inverse, by columns
   std::vector<Step> step_;
   bool fresh_ = true;
   int threads_ = 1;

@@ -19,7 +19,8 @@ struct Grouped {
   ClumpGrouping clumps;
 };
 
-Grouped grouped(const Spheres& s, std::int32_t size, double gap, Domain domain = {}, std::vector<std::int32_t> single = {}) {
+Grouped grouped(const Spheres& s, std::int32_t size, double gap, Domain domain = {},
+                std::vector<std::int32_t> single = {}) {
   Grouped g;
   g.grains.radius = s.r;
   g.grains.material.assign(s.r.size(), 0);
@@ -34,7 +35,8 @@ Grouped grouped(const Spheres& s, std::int32_t size, double gap, Domain domain =
 std::vector<int> numbers(const Grouped& g) {
   std::vector<int> of(g.x.size(), -1);
   for (std::size_t b = 0; b < g.clumps.size(); ++b)
-    for (std::int32_t k = g.clumps.start[b]; k < g.clumps.start[b + 1]; ++k) of[g.clumps.grain[k]] = static_cast<int>(b);
+    for (std::int32_t k = g.clumps.start[b]; k < g.clumps.start[b + 1]; ++k)
+      of[g.clumps.grain[k]] = static_cast<int>(b);
   return of;
 }
 
@@ -71,7 +73,8 @@ TEST_CASE("members touch one another, and sizes are about what was asked") {
   const Grouped g = grouped(s, 4, gap);
   std::map<std::size_t, int> sizes;
   for (std::size_t b = 0; b < g.clumps.size(); ++b) {
-    const auto first = g.clumps.grain.begin() + g.clumps.start[b], last = g.clumps.grain.begin() + g.clumps.start[b + 1];
+    const auto first = g.clumps.grain.begin() + g.clumps.start[b],
+               last = g.clumps.grain.begin() + g.clumps.start[b + 1];
     ++sizes[static_cast<std::size_t>(last - first)];
     // connected: from the first member every one can be reached over touching pairs
     std::set<std::int32_t> reached{*first}, rest(first + 1, last);
@@ -95,12 +98,14 @@ TEST_CASE("members touch one another, and sizes are about what was asked") {
 
 TEST_CASE("shapes are compact, leftovers join the smallest neighbour, single grains stay so") {
   // a row of five: 0-1, 2-3, and 4 joins the clump that it touches
-  const Spheres row{{vec(0, 0, 0), vec(1, 0, 0), vec(2, 0, 0), vec(3, 0, 0), vec(4, 0, 0)}, std::vector<double>(5, 0.5)};
+  const Spheres row{{vec(0, 0, 0), vec(1, 0, 0), vec(2, 0, 0), vec(3, 0, 0), vec(4, 0, 0)},
+                    std::vector<double>(5, 0.5)};
   CHECK(numbers(grouped(row, 2, 0.0)) == std::vector<int>{0, 0, 1, 1, 1});
   CHECK(numbers(grouped(row, 2, 0.0, {}, {2})) == std::vector<int>{0, 0, -1, 1, 1});
   CHECK(numbers(grouped(row, 1, 0.0)) == std::vector<int>(5, -1));
   // a square beats a row: the fourth is nearest to the centre of three
-  const Spheres square{{vec(0, 0, 0), vec(1, 0, 0), vec(2, 0, 0), vec(0, 1, 0), vec(1, 1, 0)}, std::vector<double>(5, 0.5)};
+  const Spheres square{{vec(0, 0, 0), vec(1, 0, 0), vec(2, 0, 0), vec(0, 1, 0), vec(1, 1, 0)},
+                       std::vector<double>(5, 0.5)};
   CHECK(numbers(grouped(square, 4, 0.0)) == std::vector<int>{0, 0, 0, 0, 0});
   const Spheres wide{{vec(0, 0, 0), vec(1, 0, 0), vec(2, 0, 0), vec(3, 0, 0), vec(0, 1, 0), vec(1, 1, 0)},
                      std::vector<double>(6, 0.5)};

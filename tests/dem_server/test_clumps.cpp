@@ -52,8 +52,10 @@ void heap(Scene& scene, double friction, std::int32_t size, int threads = 1, dou
   scene.engine.make_clumps(clumps_of(size, 0.35));
   if (strength > 0.0) scene.engine.make_bonds(0.35);
   std::vector<Wall> walls;
-  for (const auto& [point, normal] : {std::pair{vec(0, 0, -1), vec(0, 0, 1)}, {vec(-1, 0, 0), vec(1, 0, 0)},
-                                      {vec(5, 0, 0), vec(-1, 0, 0)}, {vec(0, -1, 0), vec(0, 1, 0)},
+  for (const auto& [point, normal] : {std::pair{vec(0, 0, -1), vec(0, 0, 1)},
+                                      {vec(-1, 0, 0), vec(1, 0, 0)},
+                                      {vec(5, 0, 0), vec(-1, 0, 0)},
+                                      {vec(0, -1, 0), vec(0, 1, 0)},
                                       {vec(0, 5, 0), vec(0, -1, 0)}})
     walls.push_back(wall(point, normal, friction));
   scene.engine.set_walls(walls);
@@ -138,7 +140,8 @@ TEST_CASE("a free asymmetric clump keeps energy, angular momentum and shape, and
   for (int k = 0; k < steps; ++k) {
     const Eigen::Vector3d k1 = rate(w), k2 = rate(w + 0.5 * h * k1), k3 = rate(w + 0.5 * h * k2), k4 = rate(w + h * k3);
     const Eigen::Matrix3d r1 = spinning(turn, w), r2 = spinning(turn + 0.5 * h * r1, w + 0.5 * h * k1),
-                          r3 = spinning(turn + 0.5 * h * r2, w + 0.5 * h * k2), r4 = spinning(turn + h * r3, w + h * k3);
+                          r3 = spinning(turn + 0.5 * h * r2, w + 0.5 * h * k2),
+                          r4 = spinning(turn + h * r3, w + h * k3);
     turn += h / 6.0 * (r1 + 2 * r2 + 2 * r3 + r4);
     w += h / 6.0 * (k1 + 2 * k2 + 2 * k3 + k4);
     turned_over = std::min(turned_over, w.normalized().dot(start.normalized()));
@@ -342,7 +345,8 @@ TEST_CASE("the stable step with clumps is that of the bodies: closed form, and w
     LinearNetwork springs;
     springs.build(scene.engine.contacts(), scene.engine.motion.displacement, 0.0);
     const double limit = 2.0 / std::sqrt(highest_eigenvalue(springs, scene.engine.motion, scene.engine.rotation(), true,
-                                                            &scene.engine.clumps()).highest);
+                                                            &scene.engine.clumps())
+                                             .highest);
     CHECK(scene.engine.stable_step() <= 1.0001 * limit);
     const double speed = scene.engine.motion.largest_speed();
     scene.step(share * limit, 40);
