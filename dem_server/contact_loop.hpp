@@ -13,6 +13,7 @@
 // shears nothing. Losses are booked so that they close the leapfrog balance, in which a force works by
 // the mean of its values at both ends of a step:
 //   friction   1/2 k_s (s_old + s_new).(s_trial - s_new)
+//   switching  see switching_loss, contacts that open or close in the step
 //   breakage   the same, and 1/2 (f_old + f_new)(e_new - e_old) - change of 1/2 k_n e^2
 // Rolling resistance and contact damping: see dissipation.hpp. Loops without them are their own instances, in which
 // nothing of them is left.
@@ -131,6 +132,11 @@ inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, Co
                           0.5 * k.shear * dot(turned + r.spring, trial.spring - r.spring);
     ++sums.breaks;
     now |= broken | offset;
+  } else if (((was ^ r.state) & touching) && !(was & bonded)) [[unlikely]] {
+    const Vec old_du = du - dt * dv, old_D = rest_branch + old_du;
+    const double e_old = (rest_square + dot(rest_branch + old_D, old_du)) / (norm(old_D) + rest);
+    sums.losses.switching += switching_loss(k.normal, e_old, trial.elongation);
+    sums.losses.friction += 0.5 * k.shear * dot(turned + r.spring, trial.spring - r.spring);
   } else if (r.state != bonded && r.state != touching) {
     sums.losses.friction += 0.5 * k.shear * dot(turned + r.spring, trial.spring - r.spring);
   }

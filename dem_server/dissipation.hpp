@@ -38,14 +38,23 @@ struct ContactLosses {
   double broken = 0.0;    ///< energy of bonds at breakage, J
   double rolling = 0.0;   ///< plastic rolling, J
   double damping = 0.0;   ///< dashpots of contacts, J
+  double switching = 0.0;  ///< what a finite step takes, or gives where negative, at contacts that open or close, J
 
   void operator+=(const ContactLosses& other) {
     friction += other.friction;
     broken += other.broken;
     rolling += other.rolling;
     damping += other.damping;
+    switching += other.switching;
   }
 };
+
+/// What a step takes in which a contact of stiffness k opens or closes between the elongations before and now, J: its
+/// force works with the mean of its values at both ends, one of them 0, over the whole way; stored is 1/2 k e^2.
+///   closing: -1/2 k e_before e_now >= 0    opening: 1/2 k e_before e_now <= 0
+inline double switching_loss(double k, double before, double now) {
+  return -0.5 * k * before * now * (now < before ? 1.0 : -1.0);
+}
 
 /// Rolling resistance of one contact, weight included in the stiffness.
 struct RollingResistance {

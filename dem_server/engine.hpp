@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "dem_server/block.hpp"
+#include "dem_server/clumps.hpp"
 #include "dem_server/contact_forces.hpp"
 #include "dem_server/linear_network.hpp"
 #include "dem_server/rotation.hpp"
@@ -47,6 +48,9 @@ class DemEngine : public engine::Engine {
   /// Bonds every pair whose gap is at most gap times the sum of the radii, instead of earlier bonds;
   /// stress-free at the rest positions. Needs the grains and the options' box.
   Bonded make_bonds(double gap);
+  /// Joins touching spheres to rigid clumps, instead of earlier ones; members lose the bonds among them. Needs the
+  /// grains and the options' box; bonds made before earlier clumps must be made again.
+  Clumped make_clumps(const ClumpRequest& request);
   void set_walls(std::vector<Wall> walls);
   void set_block(const BlockSetup& setup);
   /// See Sponge::set; call after prepare.
@@ -81,6 +85,7 @@ class DemEngine : public engine::Engine {
   Domain domain() const;
   const Rotation& rotation() const { return rotation_; }
   const Block& block() const { return block_; }
+  const Clumps& clumps() const { return clumps_; }
   const Walls& walls() const { return walls_; }
   const engine::Work& sponge_work() const { return sponge_.work; }
   /// Search margin, m.
@@ -99,6 +104,7 @@ class DemEngine : public engine::Engine {
   std::uint64_t rotation_groups() const;
   void find_surfaces();
   void refuse_overlaps() const;
+  void refuse_bound_clumps() const;
   LawKind choose_law() const;
   ContactSource source() const;
 
@@ -136,6 +142,7 @@ class DemEngine : public engine::Engine {
   LinearNetwork frozen_;
   Walls walls_;
   Block block_;
+  Clumps clumps_;
   Sponge sponge_;
 
   VecField displacement_at_build_;

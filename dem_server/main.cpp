@@ -115,6 +115,8 @@ dem::BondNetwork bond_network(const dem::DemEngine& engine) {
 protocol::Homogenised homogenise(const dem::DemEngine& engine, const protocol::Homogenise& m) {
   if (engine.bonds().empty())
     throw engine::RequestError("HOMOGENISE", "the grains are not bonded", "send BONDS before PREPARE");
+  if (!engine.clumps().empty())
+    throw engine::RequestError("HOMOGENISE", "grains are joined to clumps", "send GRAINS and BONDS without CLUMPS");
   dem::HomogeniseOptions options;
   options.threads = engine.threads;
   const dem::Window window{to_vec(m.box_lo.data), to_vec(m.box_hi.data)};
@@ -128,7 +130,7 @@ protocol::Homogenised homogenise(const dem::DemEngine& engine, const protocol::H
 }
 
 std::vector<std::string> capabilities() {
-  std::vector<std::string> names{"frozen", "updated", "walls", "block", "sponge", "pack", "homogenise"};
+  std::vector<std::string> names{"frozen", "updated", "walls", "block", "sponge", "pack", "homogenise", "clumps"};
   for (const std::string& field : dem::DemEngine::field_names()) names.push_back("field:" + field);
   return names;
 }
@@ -154,6 +156,14 @@ void serve(protocol::Server& server) {
     protocol::Bonded reply;
     reply.bonds = made.bonds;
     reply.contacts_per_grain = made.contacts_per_grain;
+    return reply;
+  });
+  service.on<protocol::Clumps>([&](protocol::Clumps&& m) {
+    const dem::Clumped made = engine.make_clumps({std::move(m.clump_size.data), m.gap, std::move(m.single.data)});
+    protocol::Clumped reply;
+    reply.clumps = made.clumps;
+    reply.grains = made.grains;
+    reply.aspect_ratio = made.aspect_ratio;
     return reply;
   });
   service.on<protocol::Walls>([&](const protocol::Walls& m) {

@@ -69,6 +69,7 @@ void DemEngine::set_grains(VecField position, std::vector<double> radius, std::v
   grains_.radius = std::move(radius);
   grains_.material = std::move(material);
   bonds_.clear();
+  clumps_.clear();
   built_ = false;
   boundary = {};
   tie.clear();
@@ -117,6 +118,7 @@ Bonded DemEngine::make_bonds(double gap) {
     const double sum_of_radii = grains_.radius[p.i] + grains_.radius[p.j];
     return norm(motion.position[p.j] - motion.position[p.i] + box.offset(p.image)) > (1.0 + reach) * sum_of_radii;
   });
+  if (!clumps_.empty()) clumps_.drop_internal(bonds_);
   built_ = false;
   const double grains = static_cast<double>(std::max<std::size_t>(grains_.size(), 1));
   return {bonds_.size(), 2.0 * static_cast<double>(bonds_.size()) / grains};
@@ -170,6 +172,8 @@ void DemEngine::check_setup() const {
                          "send GRAIN_MATERIALS with every material that grains use");
   if (contact_options_.geometry == Geometry::updated) return;
   const char* advice = "use geometry 'updated', or bonds of infinite strength";
+  if (!clumps_.empty())
+    throw RequestError("CONTACT_OPTIONS geometry", "frozen geometry knows no clumps", "use geometry 'updated'");
   if (bonds_.empty())
     throw RequestError("CONTACT_OPTIONS geometry", "frozen geometry needs bonds, there are none", advice);
   if (!walls_.empty() || block_.present())
@@ -224,18 +228,20 @@ void DemEngine::build_contacts() {
     contact_.rolling = contact_.rolling || (contact_.rotating && resists_rolling(m));
     contact_.damped = contact_.damped || m.damping_ratio > 0.0;
   }
-  const auto candidates =
+  auto candidates =
       frozen ? std::vector<Pair>{} : pairs_of(present_positions(), grains_.radius, skin_, built_domain_);
+  if (!clumps_.empty()) clumps_.drop_internal(candidates);
   contact_.table = first_table(source(), bonds_, candidates);
   contact_.threads = threads;
   contact_.table_changed(grains_.size());
   refuse_overlaps();
+  set_masses();
+  if (!clumps_.empty()) clumps_.build(built_domain_, motion, rotation_);
   if (frozen)
     frozen_.build(contact_.table, VecField(grains_.size(), Vec{}), 0.0);
   else
     contact_.springs_from_displacements(motion.displacement, rotation_.angle);
   displacement_at_build_ = motion.displacement;
-  set_masses();
   built_ = true;
   built_options_ = options;
   built_weights_ = weights;
@@ -327,6 +333,7 @@ void DemEngine::prepare() {
   else
     contact_.table_changed(grains_.size());
   boundary.apply_to(motion);
+  if (!clumps_.empty()) refuse_bound_clumps();
   hold_rotations();
   find_surfaces();
   step_size_ = 0.0;
@@ -345,8 +352,10 @@ std::uint64_t DemEngine::rotation_groups() const {
 
 double DemEngine::stable_step() {
   phase = "finding the stable step";
+  if (!clumps_.empty()) refuse_bound_clumps();
   double highest = 0.0, viscous = 0.0;
   const bool rotating = contact_options_.rotations;
+  const Clumps* bodies = &clumps_;
   if (contact_options_.geometry == Geometry::frozen) {
     highest = highest_eigenvalue(frozen_, motion, rotation_, contact_options_.rotations).highest;
   } else {
@@ -360,11 +369,11 @@ double DemEngine::stable_step() {
     if (contact_.damped) {
       LinearNetwork dashpots;
       dashpots.build_dashpots(contact_.table, motion.displacement, near, springs);
-      viscous = std::max(of_block.viscosity, highest_eigenvalue(dashpots, motion, rotation_, rotating).highest);
+      viscous = std::max(of_block.viscosity, highest_eigenvalue(dashpots, motion, rotation_, rotating, bodies).highest);
     }
     network.add_surface(std::move(springs));
-    highest = std::max(of_block.stiffness, highest_eigenvalue(network, motion, rotation_, rotating).highest);
-    // contacts may form at any time: never less than what two equal grains give
+    highest = std::max(of_block.stiffness, highest_eigenvalue(network, motion, rotation_, rotating, bodies).highest);
+    // contacts may form at any time: never less than what two equal grains give; in a clump they move less easily
     constexpr double normal_share = 1.0, shear_share = 3.5, rolling_share = 2.5;
     for (std::size_t i = 0; i < grains_.size(); ++i) {
       const GrainMaterial& m = grains_.material_of(i);

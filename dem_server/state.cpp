@@ -29,6 +29,9 @@ struct EngineState {
     VecField origin = e.tie.origin();
     all(origin);
     if (origin.size() == e.tie.reach()) e.tie.origin() = std::move(origin);
+    std::uint64_t grouping = e.clumps_.grouping_key();
+    all(grouping, e.clumps_.bodies, e.clumps_.damping_work);
+    if (grouping != e.clumps_.grouping_key()) throw std::out_of_range("it is of other clumps");
     all(e.displacement_at_build_, e.past_step_, e.steps_, e.rebuilds_, e.fast_, e.lost_);
   }
 };
@@ -89,6 +92,7 @@ void DemEngine::restore(std::span<const std::uint8_t> blob) {
     built_ = false;  // half a state is none
     throw engine::RequestError("RESTORE blob", error.what(), advice);
   }
+  clumps_.state_changed();
   contact_.table_changed(grains_.size());
   step_size_ = 0.0;
 }
@@ -108,6 +112,11 @@ std::uint64_t DemEngine::state_hash() const {
     if (contact_.rolling)
       for (int axis = 0; axis < 3; ++axis) hash.add(contact_.table.bending[c][axis]);
   });
+  for (const Clumps::Body& body : clumps_.bodies) {
+    for (const Vec v : {body.displacement, body.velocity, body.momentum})
+      for (int axis = 0; axis < 3; ++axis) hash.add(v[axis]);
+    for (const double component : body.attitude) hash.add(component);
+  }
   if (block_.present())
     for (const double value : block_.state()) hash.add(value);
   return hash.value();

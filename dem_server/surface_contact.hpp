@@ -94,6 +94,8 @@ inline ContactLosses follow_surface(SurfaceContact& c, const Meeting& m, double 
   }
   if (r.state != touching)
     losses.friction = 0.5 * c.stiffness.shear * dot(turned + r.spring, trial.spring - r.spring);
+  if ((c.state ^ r.state) & touching)
+    losses.switching = switching_loss(c.stiffness.normal, c.elongation, m.elongation);
   const double tension = r.tension + drag[3];
   if (c.rolling.stiffness > 0.0) losses.rolling = roll_on_surface(c, m, past_step, -tension);
   c.spring = r.spring;

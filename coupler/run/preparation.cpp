@@ -12,6 +12,7 @@
 #include "coupler/ground/loose_grains.hpp"
 #include "coupler/results/earlier_state.hpp"
 #include "coupler/scene/packing_file.hpp"
+#include "coupler/run/clumps.hpp"
 #include "protocol/engine/hash.hpp"
 
 namespace gabion::coupler {
@@ -295,7 +296,7 @@ Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_pac
   return elasticity;
 }
 
-protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, EngineLink& dem) {
+protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, EngineLink& dem, const Log& log) {
   dem.tell(options_of(scene));
   dem.tell(grain_materials(scene.materials));
   dem.tell(contact_options(scene));
@@ -305,11 +306,17 @@ protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, Eng
   grains.material = assembly.material;
   dem.tell(grains);
   if (assembly.zone.overlap() > 0.0 || scene.coupling.border_weights) send_weights(assembly, dem);
+  const std::optional<protocol::Clumps> clumps = clump_request(scene, assembly);
+  if (clumps) log(describe_clumps(dem.ask<protocol::Clumped>(*clumps), scene, assembly));
   protocol::Bonds bonds;
   bonds.gap = assembly.bond_gap;
   dem.ask<protocol::Bonded>(bonds);
   protocol::Ready ready = dem.ask<protocol::Ready>(protocol::Prepare{});
   assembly.grains.plain_mass = ready.plain_mass.data;
+  if (clumps) {
+    const std::vector<double> numbers = dem.fetch("clump");
+    assembly.clump.assign(numbers.begin(), numbers.end());
+  }
   return ready;
 }
 

@@ -48,7 +48,7 @@ Recorder::Recorder(RunFolder& folder, const scene::Scene& scene, const Assembly&
   if (assembly.has_grains) {
     const std::vector<double> position = flat(assembly.grains.position);
     const std::vector<std::int64_t> origin(assembly.origin.begin(), assembly.origin.end());
-    results_.write_grain_geometry({position, assembly.grains.radius, assembly.material, origin, grain_weights});
+    results_.write_grain_geometry({position, assembly.grains.radius, assembly.material, origin, grain_weights, assembly.clump});
   }
   if (assembly.has_mesh) {
     const std::vector<double> nodes = flat(assembly.mesh.nodes);

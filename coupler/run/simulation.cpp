@@ -83,7 +83,7 @@ void Simulation::prepare() {
   if (!assembly_.has_grains) dem_ = nullptr;
   if (!assembly_.has_mesh) continuum_ = nullptr;
   if (dem_) {
-    const protocol::Ready ready = configure_dem(scene_, assembly_, *dem_);
+    const protocol::Ready ready = configure_dem(scene_, assembly_, *dem_, log_);
     grain_mass_ = ready.mass.data;
     for (std::size_t g = 0; g < grain_mass_.size(); ++g) grain_weights_.push_back(grain_mass_[g] / ready.plain_mass[g]);
   }
@@ -154,7 +154,8 @@ double Simulation::choose_step(const scene::Stage& stage) {
 void Simulation::set_step(double dt) {
   dt_ = dt;
   if (!tie_) return;
-  tie_->set_step(dt, faces_->grain_inertia(grain_mass_, dt), faces_->node_inertia(node_mass_, dt), grain_weights_);
+  const bool absorb = scene_.stages[at_.stage].damping == 0.0;
+  tie_->set_step(dt, faces_->grain_inertia(grain_mass_, dt), faces_->node_inertia(node_mass_, dt), grain_weights_, absorb);
   const InterfaceReport& r = tie_->report();
   log_("interface: " + std::to_string(r.grains) + " grains tied by " + std::to_string(r.rows) + " rows (" + number(r.grains_per_row) +
        " grains a row), rank " + std::to_string(r.rank) + ", condition " + number(r.condition) + ", " + std::to_string(r.merged_rows) + " rows merged");

@@ -46,6 +46,7 @@ Material material(const std::string& name, const Json& m) {
           .rolling_friction = m["rolling_friction"],
           .restitution = m["restitution"],
           .rotates = m["rotation"] == "free",
+          .clump_size = m["clump_size"],
           .young = optional<double>(m, "young"),
           .poisson = optional<double>(m, "poisson"),
           .bulk_density = optional<double>(m, "bulk_density")};

@@ -157,7 +157,10 @@ void check_fills_and_mesh(Checker& check) {
                    hi = std::min(scene.fills[i].box.hi[axis], scene.ground.box.hi[axis]);
       reaches = reaches || lo < alone.lo[axis] - slack || hi > alone.hi[axis] + slack;
     }
-    if (reaches)
+    if (reaches && check.has_grains() && scene.material(scene.fills[i].material).clump_size > 1)
+      check.error(item("fills", i) + ".box", "a fill of clumps inside the part where grains stand alone",
+                  "clumps cannot be tied or share their place with the mesh: make the zone larger or the fill smaller");
+    else if (reaches)
       check.warn(item("fills", i) + ".box", "a fill inside the part where grains stand alone",
                  "the mesh has the stiffness of ground.material everywhere: make the zone larger or the fill smaller");
   }

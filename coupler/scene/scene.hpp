@@ -42,6 +42,7 @@ struct Material {
   double rolling_friction = 0.0;      ///< largest rolling moment over min(r1,r2) times the normal force
   double restitution = 1.0;
   bool rotates = true;
+  int clump_size = 1;                 ///< grains joined to one rigid clump; 1: single spheres
   // continuum; absent: measured on the packing
   std::optional<double> young;         ///< Pa
   std::optional<double> poisson;       ///< -

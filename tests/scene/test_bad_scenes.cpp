@@ -242,6 +242,18 @@ TEST_CASE("several problems are told at once") {
   }
 }
 
+TEST_CASE("clumps where they cannot be") {
+  check_mistakes("tiny_clumps.json", {
+      {{"materials.cushion.clump_size=0"}, "materials.cushion.clump_size", "expected at least 1"},
+      {{"grains.geometry=frozen"}, "materials.cushion.clump_size", "1 while grains.geometry = frozen"},
+      {{"ground.material=cushion"}, "materials.cushion.clump_size", "1 for the material of the ground in a coupled model"},
+      {{"fills[0].box[0][2]=1.5 m"}, "fills[0].box", "clumps cannot be tied"},
+      {{"model=edge", "fills[0].box[0][2]=1 m"}, "fills[0].box", "clumps cannot be tied"},
+  });
+  CHECK(read_scene(scenarios() / "tiny_clumps.json", {"model=dem", "fills[0].box[0][2]=0 m"}).scene.materials.size() == 2);
+  CHECK(read_scene(scenarios() / "tiny_clumps.json", {}).scene.material("cushion").clump_size == 4);
+}
+
 TEST_CASE("warnings do not stop") {
   const auto warned = [](const std::string& scene, const std::vector<std::string>& overrides, const std::string& path) {
     const auto read = read_scene(scenarios() / scene, overrides);

@@ -15,7 +15,7 @@ using namespace gabion::scene;
 namespace {
 
 std::vector<std::string> models_of(const std::filesystem::path& file) {
-  if (file.stem() == "impact") return {"dem", "bridging", "edge"};
+  if (file.stem() == "impact" || file.stem() == "tiny_clumps") return {"dem", "bridging", "edge"};
   if (file.stem() == "rigid_box") return {"dem"};
   return {"dem", "continuum", "bridging", "edge"};
 }
