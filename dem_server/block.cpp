@@ -81,6 +81,7 @@ void Block::set(const BlockSetup& setup) {
   contacts.clear();
   losses = {};
   damping_work = {};
+  kicks_ = 0;
 }
 
 Vec Block::spin_at(const Quaternion& q) const {
@@ -160,6 +161,7 @@ void Block::add_forces(const Grains& grains, const Domain& domain, double past_s
 void Block::kick(const engine::StepContext& context, Vec gravity) {
   const Vec dt = splat(context.dt);
   const Vec force = force_ + splat(mass_) * gravity;
+  recent_[kicks_++ % remembered_forces] = force_;
   old_velocity_ = now.velocity;
   old_spin_ = now.spin;
   damping_force_ = damping_torque_ = Vec{};
@@ -238,6 +240,13 @@ std::vector<double> Block::state() const {
   const auto axes = axes_of(now.attitude);
   for (const Vec v : body_.vertices) append(position() + to_space(axes, v));
   return all;
+}
+
+VecField Block::recent_forces() const {
+  VecField forces;
+  const std::size_t count = std::min(kicks_, remembered_forces);
+  for (std::size_t k = kicks_ - count; k < kicks_; ++k) forces.push_back(recent_[k % remembered_forces]);
+  return forces;
 }
 
 }  // namespace gabion::dem

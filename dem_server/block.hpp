@@ -64,6 +64,9 @@ class Block {
 
   /// position 3, velocity 3, quaternion 4, spin 3, force 3, torque 3, then the corners 3 each.
   std::vector<double> state() const;
+  /// Contact force of each of the last steps, oldest first, at most remembered_forces of them, N.
+  VecField recent_forces() const;
+  static constexpr std::size_t remembered_forces = 64;
   std::vector<SurfaceContact> contacts;  ///< sorted by grain
   ContactLosses losses;
   engine::Work damping_work;             ///< J
@@ -92,6 +95,8 @@ class Block {
   Vec force_{}, torque_{};  ///< of the contacts, N, N m
   Vec old_velocity_{}, old_spin_{};
   Vec damping_force_{}, damping_torque_{};
+  std::array<Vec, remembered_forces> recent_{};  ///< a ring, for histories finer than what is asked for
+  std::size_t kicks_ = 0;                        ///< since the block was set
 };
 
 }  // namespace gabion::dem

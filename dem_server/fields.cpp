@@ -34,7 +34,7 @@ std::vector<double> table(std::vector<double> values, std::uint64_t width, Shape
 
 std::vector<std::string> DemEngine::field_names() {
   return {"position", "displacement", "velocity", "rotation", "spin",      "force", "radius",    "mass",
-          "weight",   "contact",      "broken",   "lost",     "tie_force", "block", "wall_force"};
+          "weight",   "contact",      "broken",   "lost",     "tie_force", "block", "block_forces", "wall_force"};
 }
 
 std::optional<std::vector<double>> DemEngine::field(const std::string& name, Shape& shape) const {
@@ -72,6 +72,7 @@ std::optional<std::vector<double>> DemEngine::field(const std::string& name, Sha
          shape = {state.empty() ? 0u : 1u, state.size()};
          return state;
        }},
+      {"block_forces", [&] { return flat(block_.present() ? block_.recent_forces() : VecField{}, shape); }},
       {"wall_force", [&] { return flat(walls_.forces(), shape); }},
   };
   const auto found = getters.find(name);
