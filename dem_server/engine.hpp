@@ -82,6 +82,10 @@ class DemEngine : public engine::Engine {
   const Grains& grains() const { return grains_; }
   const ContactTable& contacts() const { return contact_.table; }
   const std::vector<Pair>& bonds() const { return bonds_; }
+  /// Whether the grain may rotate, boundary groups apart.
+  bool rotates(std::size_t grain) const {
+    return contact_options_.rotations && grains_.material_of(grain).rotates;
+  }
   Domain domain() const;
   const Rotation& rotation() const { return rotation_; }
   const Block& block() const { return block_; }

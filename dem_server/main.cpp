@@ -100,7 +100,10 @@ dem::BondNetwork bond_network(const dem::DemEngine& engine) {
   dem::BondNetwork network;
   network.centres = engine.motion.position;
   network.radii = grains.radius;
-  for (std::size_t i = 0; i < grains.size(); ++i) network.density.push_back(grains.material_of(i).density);
+  for (std::size_t i = 0; i < grains.size(); ++i) {
+    network.density.push_back(grains.material_of(i).density);
+    network.locked.push_back(engine.rotates(i) ? 0 : 1);
+  }
   for (const dem::Pair& pair : engine.bonds()) {
     const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
     const Vec branch = network.centres[j] + domain.offset(pair.image) - network.centres[i];

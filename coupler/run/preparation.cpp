@@ -244,7 +244,9 @@ Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_pac
   key.add(cache_version);
   add(key, flatten(packing.position));
   add(key, packing.radius);
-  add(key, {packing.gap, soil.normal_stiffness, soil.shear_stiffness, soil.density, scene.grains.rotations ? 1.0 : 0.0});
+  const bool rotating = scene.grains.rotations && soil.rotates;
+  // not 0: under it older programs kept answers in which grains rotated all the same
+  add(key, {packing.gap, soil.normal_stiffness, soil.shear_stiffness, soil.density, rotating ? 1.0 : -1.0});
   add(key, flatten(window.lo));
   add(key, flatten(window.hi));
   add(key, flatten(scene.ground.box.lo));

@@ -116,6 +116,17 @@ TEST_CASE("materials come from the scene, a file beside it, or the program") {
   CHECK(read.scene.material("seed_soil").normal_strength == infinity);
   CHECK(read.scene.material("seed_soil").density == 2650);
   CHECK_FALSE(read.scene.material("seed_soil").young);
+  CHECK(read.scene.material("seed_soil").rolling_stiffness == 0.0);
+  CHECK(read.scene.material("seed_soil").rolling_friction == 0.0);
+  CHECK(read.scene.material("seed_soil").restitution == 1.0);
+  CHECK(read.scene.material("seed_soil").rotates);
+  const Material lossy = tiny({R"(materials={"seed_soil": {"normal_stiffness": "1 GPa", "shear_stiffness": "0.2 GPa",
+      "rolling_stiffness": 0.5, "rolling_friction": "infinite", "restitution": 0.3, "rotation": "locked"}})"})
+                             .scene.material("seed_soil");
+  CHECK(lossy.rolling_stiffness == 0.5);
+  CHECK(lossy.rolling_friction == infinity);
+  CHECK(lossy.restitution == 0.3);
+  CHECK_FALSE(lossy.rotates);
   CHECK_THROWS_AS(read.scene.material("clay"), std::out_of_range);
 
   const auto folder = std::filesystem::path(GABION_BINARY_DIR) / "scene_materials";
