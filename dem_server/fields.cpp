@@ -33,7 +33,7 @@ std::vector<double> table(std::vector<double> values, std::uint64_t width, Shape
 }  // namespace
 
 std::vector<std::string> DemEngine::field_names() {
-  return {"position", "displacement", "velocity", "rotation", "spin",      "force", "radius",    "mass",
+  return {"position", "displacement", "velocity", "rotation", "spin",      "force", "radius",     "mass",
           "weight",   "contact",      "broken",   "lost",     "tie_force", "block", "wall_force", "clump"};
 }
 
@@ -75,8 +75,8 @@ std::optional<std::vector<double>> DemEngine::field(const std::string& name, Sha
       {"clump",
        [&] {
          const std::vector<std::int32_t>& of = clumps_.body_of();
-         return column(of.empty() ? std::vector<double>(grains_.size(), -1.0) : std::vector<double>(of.begin(), of.end()),
-                       shape);
+         return column(
+             of.empty() ? std::vector<double>(grains_.size(), -1.0) : std::vector<double>(of.begin(), of.end()), shape);
        }},
       {"wall_force", [&] { return flat(walls_.forces(), shape); }},
   };

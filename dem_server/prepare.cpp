@@ -219,8 +219,7 @@ void DemEngine::build_contacts() {
   contact_ = ContactForces{};
   contact_.law = choose_law();
   contact_.rotating = contact_options_.rotations;
-  auto candidates =
-      frozen ? std::vector<Pair>{} : pairs_of(present_positions(), grains_.radius, skin_, built_domain_);
+  auto candidates = frozen ? std::vector<Pair>{} : pairs_of(present_positions(), grains_.radius, skin_, built_domain_);
   if (!clumps_.empty()) clumps_.drop_internal(candidates);
   contact_.table = first_table(source(), bonds_, candidates);
   contact_.threads = threads;
@@ -350,8 +349,8 @@ double DemEngine::stable_step() {
     walls_.add_springs(grains_, near, springs);
     const double of_block = block_.add_springs(grains_, near, springs);
     network.add_surface(std::move(springs));
-    highest = std::max(
-        of_block, highest_eigenvalue(network, motion, rotation_, contact_options_.rotations, &clumps_).highest);
+    highest = std::max(of_block,
+                       highest_eigenvalue(network, motion, rotation_, contact_options_.rotations, &clumps_).highest);
     // contacts may form at any time: never less than what two equal grains give; in a clump they move less easily
     constexpr double normal_share = 1.0, shear_share = 3.5;
     for (std::size_t i = 0; i < grains_.size(); ++i) {
