@@ -104,7 +104,7 @@ class Clumps {
   };
 
   void kick_one(std::size_t b, const engine::StepContext& context, engine::Motion& motion, Rotation& rotation);
-  Vec spin_at(std::size_t b, const Quaternion& q) const;
+  Vec midpoint_spin(std::size_t b, double dt) const;
   void move_members(std::size_t b, engine::Motion& motion, Rotation& rotation);
   void put_members(std::size_t b, engine::Motion& motion) const;
   void turn_with(std::size_t b, Vec velocity, Vec spin, engine::Motion& motion, Rotation& rotation);

@@ -77,8 +77,8 @@ std::optional<std::vector<double>> DemEngine::field(const std::string& name, Sha
       {"clump",
        [&] {
          const std::vector<std::int32_t>& of = clumps_.body_of();
-         return column(of.empty() ? std::vector<double>(grains_.size(), -1.0) : std::vector<double>(of.begin(), of.end()),
-                       shape);
+         return column(
+             of.empty() ? std::vector<double>(grains_.size(), -1.0) : std::vector<double>(of.begin(), of.end()), shape);
        }},
       {"wall_force", [&] { return flat(walls_.forces(), shape); }},
   };

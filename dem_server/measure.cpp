@@ -111,19 +111,18 @@ std::vector<engine::NamedCount> DemEngine::counters() const {
   double surface_contacts = 0;
   for (const auto* list : {&walls_.contacts, &block_.contacts})
     for (const SurfaceContact& c : *list) surface_contacts += c.state & touching ? 1 : 0;
-  std::vector<engine::NamedCount> counts{
-          {"grains", static_cast<double>(grains_.size())},
-          {"contacts", contacts},
-          {"bonds", bonds},
-          {"broken", static_cast<double>(contact_.breaks)},
-          {"sliding", slides},
-          {"lost", static_cast<double>(lost_.size())},
-          {"fast", static_cast<double>(fast_)},
-          {"rebuilds", static_cast<double>(rebuilds_)},
-          {"surface_contacts", surface_contacts},
-          {"tied_contacts", tied_contacts},
-          {"tied_sliding", tied_sliding},
-          {"tied_broken", tied_broken}};
+  std::vector<engine::NamedCount> counts{{"grains", static_cast<double>(grains_.size())},
+                                         {"contacts", contacts},
+                                         {"bonds", bonds},
+                                         {"broken", static_cast<double>(contact_.breaks)},
+                                         {"sliding", slides},
+                                         {"lost", static_cast<double>(lost_.size())},
+                                         {"fast", static_cast<double>(fast_)},
+                                         {"rebuilds", static_cast<double>(rebuilds_)},
+                                         {"surface_contacts", surface_contacts},
+                                         {"tied_contacts", tied_contacts},
+                                         {"tied_sliding", tied_sliding},
+                                         {"tied_broken", tied_broken}};
   if (!clumps_.empty()) counts.push_back({"clumps", static_cast<double>(clumps_.size())});
   return counts;
 }

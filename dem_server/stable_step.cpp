@@ -61,7 +61,12 @@ class Operator {
  public:
   Operator(LinearNetwork& network, const engine::Motion& motion, const Rotation& rotation, bool rotating,
            const Clumps* clumps)
-      : network_(network), rotating_(rotating), clumps_(clumps), root_(motion.size()), u_(motion.size()), f_(motion.size()) {
+      : network_(network),
+        rotating_(rotating),
+        clumps_(clumps),
+        root_(motion.size()),
+        u_(motion.size()),
+        f_(motion.size()) {
     for (std::size_t i = 0; i < motion.size(); ++i) {
       const Vec freedom = motion.freedom[i];
       const double root = 1.0 / std::sqrt(motion.mass[i]);

@@ -40,6 +40,29 @@ class DemServer(SessionCases, RunCases, EngineTest):
         half = math.asin(omega * self.dt / 2)
         self.assertAlmostEqual(period / (math.pi * self.dt / half), 1.0, 4)
 
+    def test_two_clumps_vibrate_as_bodies(self):
+        client = self.greeted()
+        models.set_up_chain(client, 4)
+        client.ask("CONTACT_OPTIONS", geometry="updated", rotations=1, skin=0.0)
+        self.assertEqual(client.ask("CLUMPS", clump_size=[2], gap=1e-6),
+                         {"clumps": 2, "grains": 4, "aspect_ratio": 2.0})
+        self.assertEqual(client.ask("BONDS", gap=1e-6)["bonds"], 1)
+        self.ready = client.ask("PREPARE")
+        self.assertEqual(list(client.ask("FETCH", field="clump")["values"].values), [0, 0, 1, 1])
+        # one spring between two bodies of twice the mass: omega^2 = k/m; their members move alike
+        omega = math.sqrt(models.BOND_STIFFNESS / models.GRAIN_MASS)
+        dt = 0.01 * 2.0 / omega
+        client.ask("SET_FIELD", field="velocity", values=[[1e-3, 0, 0]] * 2 + [[-1e-3, 0, 0]] * 2)
+        steps = 100
+        client.run(steps, dt)
+        u = [row[0] for row in client.ask("FETCH", field="displacement")["values"].rows()]
+        self.assertEqual((u[0], u[2]), (u[1], u[3]))
+        self.assertAlmostEqual(u[0] / (1e-3 / omega * math.sin(omega * steps * dt)), 1.0, 2)
+        error = self.refusal(client.ask, "CLUMPS", clump_size=[0], gap=1e-6)
+        self.assertEqual((error.code, error.where), ("value", "CLUMPS clump_size"))
+        client.ask("CLUMPS", clump_size=[2], gap=1e-6, single=[0, 1])
+        client.ask("PREPARE")
+        self.assertEqual(list(client.ask("FETCH", field="clump")["values"].values), [-1, -1, 0, 0])
 
 class ContinuumServer(SessionCases, RunCases, EngineTest):
     engine_name, role = "continuum_server", "continuum"

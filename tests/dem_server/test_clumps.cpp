@@ -425,6 +425,29 @@ TEST_CASE("fields that are set become the nearest rigid motion") {
   CHECK(*noisy.engine.field("clump", shape) == std::vector<double>(4, 0.0));
 }
 
+TEST_CASE("a clump of grains that may not turn does not turn") {
+  const Spheres s{{vec(0, 0, 0.51), vec(0.8, 0, 1.11)}, {0.5, 0.5}};
+  for (const bool by_constraint : {true, false}) {
+    Scene scene;
+    scene.grains(s.x, s.r, frictional_material(0.3));
+    REQUIRE(scene.engine.make_clumps(clumps_of(2)).clumps == 1);
+    scene.engine.set_walls({wall(vec(0, 0, 0), vec(0, 0, 1), 0.3)});
+    if (by_constraint) scene.engine.boundary.add({"turn", {0, 1}, 8, vec(0, 0, 0), {}}, 2);
+    scene.prepare(Geometry::updated, by_constraint);
+    scene.set("velocity", VecField(2, vec(0, 0, -0.2)));
+    const double dt = 0.02 * scene.engine.stable_step();
+    scene.step(dt);
+    const double before = scene.engine.ledger().balance();
+    scene.step(dt, 4000);
+    // bounces back like one sphere of twice the mass
+    for (int i = 0; i < 2; ++i) {
+      CHECK(scene.velocity(i)[2] == Approx(0.2).epsilon(1e-3));
+      CHECK(norm(scene.spin(i)) == 0.0);
+    }
+    CHECK(scene.engine.ledger().balance() == Approx(before).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("what clumps cannot do is refused by name") {
   const Spheres s{{vec(0, 0, 0), vec(1, 0, 0), vec(2, 0, 0), vec(3, 0, 0)}, {0.5, 0.5, 0.5, 0.5}};
   const auto made = [&](Scene& scene, Geometry geometry = Geometry::updated) {
