@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coupler/ground/elasticity.hpp"
+#include "coupler/ground/face_layers.hpp"
 #include "coupler/ground/grains.hpp"
 #include "coupler/ground/mesh.hpp"
 #include "coupler/interface/rows.hpp"
@@ -21,6 +22,7 @@ struct Assembly {
   double bond_gap = 0.0;
   HexMesh mesh;
   Elasticity elasticity;
+  FaceLayers layers;  ///< of the mesh
 
   bool coupled() const { return has_grains && has_mesh; }
 };
