@@ -1,6 +1,7 @@
 // dem_server: the discrete-element engine behind the protocol.
 
 #include "dem_server/engine.hpp"
+#include "dem_server/packing/face_offset.hpp"
 #include "dem_server/packing/homogenise.hpp"
 #include "dem_server/packing/packing.hpp"
 #include "protocol/messages.hpp"
@@ -115,11 +116,15 @@ dem::BondNetwork bond_network(const dem::DemEngine& engine) {
   return network;
 }
 
-protocol::Homogenised homogenise(const dem::DemEngine& engine, const protocol::Homogenise& m) {
+void need_bonds(const dem::DemEngine& engine, const char* request) {
   if (engine.bonds().empty())
-    throw engine::RequestError("HOMOGENISE", "the grains are not bonded", "send BONDS before PREPARE");
+    throw engine::RequestError(request, "the grains are not bonded", "send BONDS before PREPARE");
   if (!engine.clumps().empty())
-    throw engine::RequestError("HOMOGENISE", "grains are joined to clumps", "send GRAINS and BONDS without CLUMPS");
+    throw engine::RequestError(request, "grains are joined to clumps", "send GRAINS and BONDS without CLUMPS");
+}
+
+protocol::Homogenised homogenise(const dem::DemEngine& engine, const protocol::Homogenise& m) {
+  need_bonds(engine, "HOMOGENISE");
   dem::HomogeniseOptions options;
   options.threads = engine.threads;
   const dem::Window window{to_vec(m.box_lo.data), to_vec(m.box_hi.data)};
@@ -132,8 +137,23 @@ protocol::Homogenised homogenise(const dem::DemEngine& engine, const protocol::H
   return reply;
 }
 
+protocol::FaceOffset measure_face(const dem::DemEngine& engine, protocol::MeasureFace&& m) {
+  constexpr std::uint32_t faces = 6;
+  need_bonds(engine, "MEASURE_FACE");
+  if (m.face >= faces)
+    throw engine::RequestError("MEASURE_FACE.face", "there is no face " + std::to_string(m.face), "send 0 to 5");
+  const dem::HeldFace face{.axis = static_cast<int>(m.face / 2), .high = m.face % 2 == 1, .place = m.place,
+                           .grains = std::move(m.entities.data), .components = m.components};
+  const dem::Window window{to_vec(m.box_lo.data), to_vec(m.box_hi.data)};
+  const dem::FaceOffset result = dem::face_offset(bond_network(engine), engine.domain(), face, window, {});
+  protocol::FaceOffset reply;
+  reply.offset = result.offset;
+  reply.residual = result.residual;
+  return reply;
+}
+
 std::vector<std::string> capabilities() {
-  std::vector<std::string> names{"frozen", "updated", "walls", "block", "sponge", "pack", "homogenise", "clumps"};
+  std::vector<std::string> names{"frozen", "updated", "walls", "block", "sponge", "pack", "homogenise", "measure_face", "clumps"};
   for (const std::string& field : dem::DemEngine::field_names()) names.push_back("field:" + field);
   return names;
 }
@@ -190,6 +210,10 @@ void serve(protocol::Server& server) {
   service.on<protocol::Homogenise>([&](const protocol::Homogenise& m) {
     engine.phase = "homogenising";
     return homogenise(engine, m);
+  });
+  service.on<protocol::MeasureFace>([&](protocol::MeasureFace&& m) {
+    engine.phase = "measuring a face";
+    return measure_face(engine, std::move(m));
   });
   server.run(service);
 }

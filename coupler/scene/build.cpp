@@ -96,7 +96,7 @@ Grains grains(const Json& g, const Json& coupling) {
 }
 
 Mesh mesh(const Json& m) {
-  return {.size = m["size"], .grading = m["grading"], .element = m["element"], .stiffness = m["stiffness"]};
+  return {.size = m["size"], .grading = m["grading"], .element = m["element"], .stiffness = m["stiffness"], .held_faces = m["held_faces"]};
 }
 
 /// Radii from the border within which grains are tied. A tied layer is too stiff, for its grains cannot move against one

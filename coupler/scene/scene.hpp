@@ -83,6 +83,7 @@ struct Mesh {
   std::string element = "brick";
   /// Continuum constants from: measured (on the packing), material (young, poisson, bulk_density)
   std::string stiffness = "measured";  ///< measured, measured_isotropic, material
+  std::string held_faces = "measured";  ///< measured: as long as the grains held there; plain: on the face
 };
 
 struct Sponge {

@@ -63,6 +63,22 @@ class DemServer(SessionCases, RunCases, EngineTest):
         client.ask("CLUMPS", clump_size=[2], gap=1e-6, single=[0, 1])
         client.ask("PREPARE")
         self.assertEqual(list(client.ask("FETCH", field="clump")["values"].values), [-1, -1, 0, 0])
+    def test_the_face_that_a_chain_is_held_at(self):
+        """Grains held half a metre inside the face: a rod would have to be held there."""
+        count, inside = 14, 0.5
+        client = self.greeted()
+        models.set_up_chain(client, count)
+        client.ask("OPTIONS", **{**models.options(), "periodic": [0, 1, 1]})
+        client.ask("PREPARE")
+        window = {"box_lo": [2.5, -10, -10], "box_hi": [count - 2.5, 10, 10]}
+        for face, place, grain in ((0, -inside, 0), (1, count - 1 + inside, count - 1)):
+            measured = client.ask("MEASURE_FACE", face=face, place=place, entities=[grain], components=1, **window)
+            self.assertAlmostEqual(measured["offset"], inside, 8)
+        self.assertIn("normal", str(self.refusal(client.ask, "MEASURE_FACE", face=0, place=0.0, entities=[0],
+                                                 components=6, **window)))
+        self.assertIn("face 6", str(self.refusal(client.ask, "MEASURE_FACE", face=6, entities=[0], components=1,
+                                                 **window)))
+
 
 class ContinuumServer(SessionCases, RunCases, EngineTest):
     engine_name, role = "continuum_server", "continuum"
