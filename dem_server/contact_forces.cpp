@@ -18,6 +18,19 @@ Loop loop_of(bool rotating, bool scattering) {
   return rotating ? keep_contacts<Law, true> : keep_contacts<Law, false>;
 }
 
+/// Loops of a ground that is strained between steps.
+Loop choose_stretched(LawKind law, bool rotating, bool scattering) {
+  switch (law) {
+    case LawKind::elastic_bond:
+      return loop_of<Stretched<ElasticBond>>(rotating, scattering);
+    case LawKind::breakable_bond:
+      return loop_of<Stretched<BreakableBond>>(rotating, scattering);
+    case LawKind::friction:
+      break;
+  }
+  return loop_of<Stretched<Friction>>(rotating, scattering);
+}
+
 Loop choose(LawKind law, bool rotating, bool scattering) {
   switch (law) {
     case LawKind::elastic_bond:
@@ -42,19 +55,22 @@ void ContactForces::add(std::size_t first, std::size_t last, double past_step, c
                         engine::Motion& motion, Rotation& rotation) {
   if (first >= last) return;
   const bool scattering = threads <= 1;
-  const Loop loop = choose(law, rotating, scattering);
+  const Loop loop = (stretched ? choose_stretched : choose)(law, rotating, scattering);
   const LoopArrays arrays{
       table.start.data(),     table.second.data(),   table.branch.data(),  table.spring.data(),
       table.stiffness.data(), table.strength.data(), table.state.data(),   motion.displacement.data(),
       motion.velocity.data(), rotation.spin.data(),  motion.force.data(),  rotation.torque.data(),
-      buffer_.force.data(),   buffer_.moment.data(), grains.radius.data(), past_step};
+      buffer_.force.data(),   buffer_.moment.data(), grains.radius.data(), past_step,
+      strain_rate};
   const std::size_t blocks = (last - first + block - 1) / block;
   sums_.assign(blocks, ContactSums{});
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
   for (std::size_t b = 0; b < blocks; ++b)
     loop(arrays, first + b * block, std::min(last, first + (b + 1) * block), sums_[b]);
   if (!scattering) buffer_.gather(first, last, rotating, motion.force, rotation.torque, threads);
+  if (first == 0) virial = Vec{};
   for (std::size_t b = 0; b < blocks; ++b) {
+    virial += sums_[b].virial;
     losses.friction += sums_[b].losses.friction;
     losses.broken += sums_[b].losses.broken;
     if (sums_[b].breaks > 0) book_breaks(first + b * block, std::min(last, first + (b + 1) * block));

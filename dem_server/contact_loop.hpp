@@ -16,6 +16,7 @@
 //   breakage   the same, and 1/2 (f_old + f_new)(e_new - e_old) - change of 1/2 k_n e^2
 
 #include "dem_server/contact_forces.hpp"
+#include "dem_server/stretched_law.hpp"
 #include "dem_server/vector_kernels.hpp"
 
 namespace gabion::dem {
@@ -33,6 +34,7 @@ struct LoopArrays {
   Vec *pair_force, *pair_moment;  // keep
   const double* radius;
   double past_step;
+  Vec strain_rate;  // of the ground in the last step; read for a Stretched law only
 };
 
 /// What one contact does to its grains.
@@ -71,7 +73,7 @@ inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, Co
   const ContactSpring k = a.stiffness[c];
 
   // kinematics of the last step
-  const Vec dv = a.velocity[j] - a.velocity[i];
+  const Vec dv = relative_velocity<Law>(a.velocity[j] - a.velocity[i], a.strain_rate, D);
   const Vec dt = splat(a.past_step);
   const Vec middle = fnma(splat(0.5 * a.past_step), dv, D);
   Vec slip = dv;
@@ -114,6 +116,7 @@ inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, Co
     action.arm_i = 0.5 * d + k.half_difference;
     action.arm_j = 0.5 * d - k.half_difference;
   }
+  if constexpr (is_stretched<Law>) sums.virial += action.force * D;
   return true;
 }
 

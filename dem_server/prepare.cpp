@@ -226,6 +226,7 @@ void DemEngine::build_contacts() {
   else
     contact_.springs_from_displacements(motion.displacement, rotation_.angle);
   displacement_at_build_ = motion.displacement;
+  strain_at_build_ = 0.0;
   set_masses();
   built_ = true;
   built_options_ = options;
