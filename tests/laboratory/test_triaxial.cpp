@@ -82,7 +82,7 @@ TEST_CASE("small strains of a periodic sample give the moduli of its homogenised
   TriaxialTest test(scene.engine, confinement);
   test.confine();
   Shearing shearing;
-  shearing.inertial_number = 3e-4;
+  shearing.inertial_number = 5e-5;
   shearing.damping = 0.5;
   shearing.axial_strain = 2e-6;
   shearing.record_every = 1e-6;
@@ -135,9 +135,9 @@ TEST_CASE("neither the cell's place nor the number of threads change a test") {
     TriaxialTest test(scene.engine, confinement);
     std::vector<CurvePoint> curve{test.confine()};
     Shearing shearing;
-    shearing.inertial_number = 5e-3;
-    shearing.axial_strain = 1e-3;
-    shearing.record_every = 2e-4;
+    shearing.inertial_number = 1e-2;
+    shearing.axial_strain = 8e-4;
+    shearing.record_every = 1.6e-4;
     for (const CurvePoint& point : test.shear(shearing)) curve.push_back(point);
     return curve;
   };
