@@ -20,8 +20,8 @@ constexpr double confining_damping = 0.7;
 constexpr double step_fraction = 0.8;
 /// Points of a curve before and after peak_strain.
 constexpr double points = 100.0;
-/// Parts in which a test is asked for, between which there is progress to tell.
-constexpr int parts_to_peak = 10, parts_beyond = 40;
+/// Parts in which a test is asked for, between which there is progress to tell; they hold whole numbers of points.
+constexpr int parts_to_peak = 10, parts_beyond = 50;
 
 const std::vector<std::string> columns{"axial_strain", "volume_strain", "axial_stress [Pa]", "lateral_stress_1 [Pa]", "lateral_stress_2 [Pa]",
                                        "broken_bonds", "contacts_per_grain", "sliding"};

@@ -131,8 +131,14 @@ std::vector<CurvePoint> TriaxialTest::shear(const Shearing& request) {
   servo_->set_largest_rate(lateral_bound * aim);
   std::vector<CurvePoint> curve;
   Sums sums;
-  double next = axial_ + request.record_every;
-  while (axial_ < request.axial_strain) {
+  // the last point lies at the end, not a hair before it
+  constexpr double hair = 0.01;
+  const double end = request.axial_strain;
+  const auto after = [&](double strain) {
+    return end - strain > (1.0 + hair) * request.record_every ? strain + request.record_every : end;
+  };
+  double next = after(axial_);
+  while (axial_ < end) {
     step(request.damping, steps_ % measure_every == 0);
     const Vec now = pressure();
     sums.add(axial_, 1.0 - volume() / volume_at_start, now, confinement_.axis, lateral_);
@@ -142,11 +148,11 @@ std::vector<CurvePoint> TriaxialTest::shear(const Shearing& request) {
     apply(rate);
     if (steps_ % look_every == 0) servo_->set_stiffness(affine_stiffness());
     axial_ = 1.0 - engine_.domain().period(confinement_.axis) / box_[confinement_.axis];
-    if (axial_ < std::min(next, request.axial_strain)) continue;
+    if (axial_ < next) continue;
     curve.push_back(sums.mean());
     add_counts(curve.back());
     sums = Sums{};
-    next += request.record_every;
+    next = after(next);
   }
   return curve;
 }

@@ -140,10 +140,10 @@ def folder_of(options, name):
 def main(options):
     read(options)
     name, material = material_of(options)
+    for key in material_search.parameter(options.wanted, options.vary):
+        material_files.changed(material, key, material_search.between(options.between, key, material)[0])
     build.ensure(options.yes)
     plan = laboratory.Plan(options)
-    for key in material_search.parameter(options.wanted, options.vary):
-        material_search.between(options.between, key, material)
     folder, file = folder_of(options, name)
     print(f"folder {short(folder)}", flush=True)
     trail = []

@@ -24,13 +24,11 @@ def strains(axes, every, shades, fine_to):
     """Deviator and volume strain: the whole test on the left, its beginning on the right."""
     for pressure, points, _ in every:
         axial = [100.0 * p["axial_strain"] for p in points]
-        first = pressure not in shades["told"]
-        shades["told"].add(pressure)
-        look = {"color": shades[pressure], "lw": 1.0, "label": f"{pressure / 1e3:g} kPa" if first else None}
+        look = {"color": shades[pressure], "lw": 1.0}
         for column in (0, 1):
             axes[0][column].plot(axial, [p["q"] / 1e3 for p in points], **look)
             axes[1][column].plot(axial, [100.0 * p["volume_strain"] for p in points], **look)
-    for column, title in ((0, "whole test"), (1, "up to the peak")):
+    for column, title in ((0, "whole test"), (1, "beginning")):
         axes[0][column].set_title(title)
         axes[0][column].set_ylabel("deviator [kPa]")
         axes[1][column].set_ylabel("volume strain [%], compression positive")
@@ -41,7 +39,6 @@ def strains(axes, every, shades, fine_to):
         axes[row][1].set_xlim(0.0, 100.0 * fine_to)
     margin = 0.05 * (max(volumes) - min(volumes)) or 1e-6
     axes[1][1].set_ylim(min(volumes) - margin, max(volumes) + margin)
-    axes[0][0].legend(title="confinement")
 
 
 def envelopes(axes, found, every):
@@ -68,16 +65,19 @@ def draw(folder):
     every = list(curves(folder, content))
     pressures = sorted({pressure for pressure, _, _ in every})
     shades = {p: SHADES(0.1 + 0.75 * k / max(1, len(pressures) - 1)) for k, p in enumerate(pressures)}
-    shades["told"] = set()
     figure, axes = plt.subplots(2, 3, figsize=(13.0, 7.0))
     end = max(points[-1]["axial_strain"] for _, points, _ in every)
     peak = max(test["figures"]["peak"]["axial_strain"] for _, _, test in every)
     strains([row[:2] for row in axes], every, shades, min(end, max(0.002, 1.3 * peak) if peak < 0.5 * end else end))
     envelopes(axes[0][2], content["found"], every)
+    told = set()
     for pressure, points, _ in every:
-        axes[1][2].plot([100.0 * p["axial_strain"] for p in points], [p["contacts_per_grain"] for p in points], color=shades[pressure], lw=1.0)
+        axes[1][2].plot([100.0 * p["axial_strain"] for p in points], [p["contacts_per_grain"] for p in points], color=shades[pressure],
+                        lw=1.0, label=f"{pressure / 1e3:g} kPa" if pressure not in told else None)
+        told.add(pressure)
     axes[1][2].set_xlabel("axial strain [%]")
     axes[1][2].set_ylabel("contacts per grain")
+    axes[1][2].legend(title="confinement")
     figure.suptitle(f"{content['material']}: {len(content['samples'])} periodic samples of "
                     f"{content['samples'][0]['sample']['grains']} grains, {content['samples'][0]['sample']['contacts_per_grain']:.2f} contacts per grain")
     return save(figure, folder, "triaxial")

@@ -129,6 +129,9 @@ TEST_CASE("values out of range") {
       {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"normal_strength\": \"-1 Pa\"}}"}, "materials.seed_soil.normal_strength", "0: no bonds"},
       {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"poisson\": 0.5}}"}, "materials.seed_soil.poisson", "0.4999 is accepted"},
       {{"run.threads=0"}, "run.threads", "at least 1"},
+      {{"laboratory={}"}, "laboratory.confinements", "confinements"},
+      {{"laboratory={\"confinements\": [\"0 kPa\"]}"}, "laboratory.confinements[0]", "above 0 Pa"},
+      {{"laboratory={\"confinements\": [], \"damping\": 1}"}, "laboratory.damping", "0.2 to 0.7"},
   });
   check_mistakes("impact.json", {
       {{"block.mass=0 t"}, "block.mass", "'0 t', expected above 0 kg"},
