@@ -184,7 +184,7 @@ struct Laboratory {
   double axial_strain = 0.1;
   double peak_strain = 0.002;  ///< slow and finely recorded up to here
   double peak_inertial_number = 1e-4;
-  double inertial_number = 1e-3;
+  double inertial_number = 5e-4;
   double damping = 0.2;      ///< local, while shearing
   double unbalanced = 1e-3;  ///< at rest when confined
   std::uint64_t max_steps = 200'000;

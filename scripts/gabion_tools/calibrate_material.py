@@ -24,9 +24,11 @@ def arguments(parser):
     group.add_argument("--grains", type=int, default=3000, help="grains of a sample (default 3000)")
     group.add_argument("--seeds", type=int, default=3, help="samples, each with a packing of its own (default 3)")
     group.add_argument("--contacts-per-grain", type=float, default=5.7, help="mean number of bonds of a grain (default 5.7)")
+    group.add_argument("--solid-fraction", type=float, default=0.63, help="of the packing before grains are taken out (default 0.63)")
+    group.add_argument("--min-contacts", type=int, default=3, help="grains with fewer bonds are taken out (default 3; 0 keeps all)")
     group.add_argument("--rotations", choices=("free", "locked"), default="free", help="whether grains rotate")
     group.add_argument("--axial-strain", type=float, help="end of a test (default 0.1)")
-    group.add_argument("--inertial-number", type=float, help="rate beyond the peak (default 1e-3)")
+    group.add_argument("--inertial-number", type=float, help="rate beyond the peak (default 5e-4)")
     group.add_argument("--peak-inertial-number", type=float, help="rate up to 0.2 %% of strain (default 1e-4)")
     group.add_argument("--damping", type=float, help="local damping (default 0.2)")
     group.add_argument("--target", metavar="NAME=VALUE,...",
@@ -87,7 +89,8 @@ def read(options):
         raise UserError("--confinements: give at least one, as in '50 kPa'")
     if len(set(options.confinements)) != len(options.confinements):
         raise UserError("--confinements: one is given twice")
-    bounds = {"grains": (100, 10 ** 6), "seeds": (1, 100), "contacts_per_grain": (3.0, 12.0), "most_tests": (2, 100),
+    bounds = {"grains": (100, 10 ** 6), "seeds": (1, 100), "contacts_per_grain": (3.0, 12.0), "solid_fraction": (0.1, 0.74),
+              "min_contacts": (0, 12), "most_tests": (2, 100),
               "axial_strain": (1e-6, 0.89), "inertial_number": (1e-7, 0.1), "peak_inertial_number": (1e-7, 0.1),
               "damping": (0.0, 0.99), "threads": (1, 1024)}
     for name, (low, high) in bounds.items():
@@ -178,7 +181,8 @@ def provenance(name, plan, options, found, trail):
     asked = ", ".join(f"{key} = {value:g} {TARGETS[key]}".strip() for key, value in options.wanted.items())
     lines = [f"Found by gabion calibrate from {name} for {asked}.",
              f"Periodic samples of about {plan.grains} grains, radii 1 to {laboratory.RADIUS[1] / laboratory.RADIUS[0]:g}, solid fraction "
-             f"{laboratory.SOLID_FRACTION:g}, {plan.contacts:g} contacts per grain, rotations {plan.rotations}, "
+             f"{plan.solid_fraction:g}, {plan.contacts:g} contacts per grain, grains with fewer than {plan.min_contacts} taken out, "
+             f"rotations {plan.rotations}, "
              f"seeds {', '.join(map(str, plan.seeds))}; {len(trail)} measurements in the search.",
              "Contact parameters are no material constants: these hold for such packings. Measured with them:"]
     return lines + [line.strip() for line in laboratory.table(found)]

@@ -6,7 +6,6 @@ import math
 from gabion_tools import processes, run, strength
 from gabion_tools.errors import Failure, UserError
 
-SOLID_FRACTION = 0.63
 MEAN_CUBE = 3.75  # mean of r^3 over the cube of the smallest radius, uniform by number between r and 2 r
 RADIUS = (0.05, 0.1)  # m; results do not depend on it, for stiffness goes with r and strength with r^2
 
@@ -16,6 +15,7 @@ class Plan:
 
     def __init__(self, options):
         self.grains, self.seeds, self.contacts = options.grains, options.seeds, options.contacts_per_grain
+        self.solid_fraction, self.min_contacts = options.solid_fraction, options.min_contacts
         self.confinements, self.tests = options.confinements, options.tests
         self.laboratory = {key: value for key, value in (
             ("axial_strain", options.axial_strain), ("inertial_number", options.inertial_number),
@@ -25,7 +25,7 @@ class Plan:
 
     def side(self):
         """Of the cube, m, for the wanted number of grains before those that nothing holds are taken out."""
-        return (self.grains * 4.0 / 3.0 * math.pi * MEAN_CUBE * RADIUS[0] ** 3 / SOLID_FRACTION) ** (1.0 / 3.0)
+        return (self.grains * 4.0 / 3.0 * math.pi * MEAN_CUBE * RADIUS[0] ** 3 / self.solid_fraction) ** (1.0 / 3.0)
 
     def scene(self, name, material, seed):
         side = f"{self.side():.6g} m"
@@ -33,15 +33,16 @@ class Plan:
             "gabion": 1, "title": f"Periodic sample of {name}, seed {seed}", "model": "dem",
             "ground": {"box": [["0 m"] * 3, [side] * 3], "material": name, "periodic": ["x", "y", "z"]},
             "materials": {name: material},
-            "grains": {"radius": {"uniform": [f"{r} m" for r in RADIUS]}, "solid_fraction": SOLID_FRACTION,
-                       "contacts_per_grain": self.contacts, "seed": seed, "rotations": self.rotations},
+            "grains": {"radius": {"uniform": [f"{r} m" for r in RADIUS]}, "solid_fraction": self.solid_fraction,
+                       "contacts_per_grain": self.contacts, "min_contacts": self.min_contacts, "seed": seed, "rotations": self.rotations},
             "stages": [{"name": "none", "steps": 1}],
             "laboratory": {"confinements": [f"{p!r} Pa" for p in self.confinements] if "triaxial" in self.tests else [],
                            **self.laboratory},
         }
 
     def description(self):
-        return {"grains": self.grains, "seeds": self.seeds, "contacts_per_grain": self.contacts, "solid_fraction": SOLID_FRACTION,
+        return {"grains": self.grains, "seeds": self.seeds, "contacts_per_grain": self.contacts, "solid_fraction": self.solid_fraction,
+                "min_contacts": self.min_contacts,
                 "radius_ratio": RADIUS[1] / RADIUS[0], "rotations": self.rotations, "confinements": self.confinements,
                 "tests": self.tests, **self.laboratory}
 
