@@ -1,6 +1,9 @@
 // dem_server: the discrete-element engine behind the protocol.
 
+#include <optional>
+
 #include "dem_server/engine.hpp"
+#include "dem_server/laboratory/triaxial_test.hpp"
 #include "dem_server/packing/face_offset.hpp"
 #include "dem_server/packing/homogenise.hpp"
 #include "dem_server/packing/packing.hpp"
@@ -152,8 +155,34 @@ protocol::FaceOffset measure_face(const dem::DemEngine& engine, protocol::Measur
   return reply;
 }
 
+protocol::TriaxialCurve to_message(const std::vector<dem::CurvePoint>& curve, const dem::SampleState& state) {
+  protocol::TriaxialCurve m;
+  for (const dem::CurvePoint& point : curve) {
+    m.axial_strain.data.push_back(point.axial_strain);
+    m.volume_strain.data.push_back(point.volume_strain);
+    m.axial_stress.data.push_back(point.axial_stress);
+    m.lateral_stress.data.insert(m.lateral_stress.data.end(), {point.lateral_stress[0], point.lateral_stress[1]});
+    m.broken.data.push_back(point.broken);
+    m.contacts_per_grain.data.push_back(point.contacts);
+    m.sliding.data.push_back(point.sliding);
+  }
+  const std::uint64_t points = curve.size();
+  for (auto* column : {&m.axial_strain, &m.volume_strain, &m.axial_stress, &m.broken, &m.contacts_per_grain, &m.sliding})
+    column->set_shape(std::array<std::uint64_t, 1>{points});
+  m.lateral_stress.set_shape(std::array<std::uint64_t, 2>{points, 2});
+  m.box = std::vector<double>{state.box[0], state.box[1], state.box[2]};
+  m.step = state.step;
+  m.steps = state.steps;
+  m.unbalanced = state.unbalanced;
+  m.work = state.work;
+  m.energy_error = state.energy_error;
+  m.largest_energy = state.largest_energy;
+  return m;
+}
+
 std::vector<std::string> capabilities() {
-  std::vector<std::string> names{"frozen", "updated", "walls", "block", "sponge", "pack", "homogenise", "measure_face", "clumps"};
+  std::vector<std::string> names{"frozen", "updated", "walls", "block", "sponge", "pack", "homogenise", "measure_face", "clumps",
+                                 "triaxial"};
   for (const std::string& field : dem::DemEngine::field_names()) names.push_back("field:" + field);
   return names;
 }
@@ -214,6 +243,21 @@ void serve(protocol::Server& server) {
   service.on<protocol::MeasureFace>([&](protocol::MeasureFace&& m) {
     engine.phase = "measuring a face";
     return measure_face(engine, std::move(m));
+  });
+  std::optional<dem::TriaxialTest> test;
+  service.on<protocol::TriaxialConfine>([&](const protocol::TriaxialConfine& m) {
+    engine.phase = "confining a sample";
+    test.emplace(engine, dem::Confinement{m.pressure, static_cast<int>(m.axis), m.damping, m.unbalanced, m.max_steps,
+                                          m.step_fraction});
+    const dem::CurvePoint confined = test->confine();
+    return to_message({confined}, test->state());
+  });
+  service.on<protocol::TriaxialShear>([&](const protocol::TriaxialShear& m) {
+    if (!test || !engine.stretched())
+      throw engine::RequestError("TRIAXIAL_SHEAR", "the sample is not confined", "send TRIAXIAL_CONFINE first");
+    engine.phase = "shearing a sample";
+    const auto curve = test->shear({m.axial_strain, m.record_every, m.inertial_number, m.damping});
+    return to_message(curve, test->state());
   });
   server.run(service);
 }

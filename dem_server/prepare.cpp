@@ -242,6 +242,7 @@ void DemEngine::build_contacts() {
   else
     contact_.springs_from_displacements(motion.displacement, rotation_.angle);
   displacement_at_build_ = motion.displacement;
+  strain_at_build_ = 0.0;
   built_ = true;
   built_options_ = options;
   built_weights_ = weights;

@@ -267,6 +267,17 @@ Run run(const Json& r) {
           .measure_energy = r["measure_energy"]};
 }
 
+Laboratory laboratory(const Json& l) {
+  return {.confinements = l["confinements"].get<std::vector<double>>(),
+          .axial_strain = l["axial_strain"],
+          .peak_strain = l["peak_strain"],
+          .peak_inertial_number = l["peak_inertial_number"],
+          .inertial_number = l["inertial_number"],
+          .damping = l["damping"],
+          .unbalanced = l["unbalanced"],
+          .max_steps = l["max_steps"]};
+}
+
 }  // namespace
 
 bool InitialMotion::any() const {
@@ -299,6 +310,7 @@ Scene build_scene(Json& v, const std::string& name) {
   for (const Json& probe : v["probes"]) scene.probes.push_back({probe["name"], point(probe["at"])});
   scene.output = output(v["output"]);
   scene.run = run(v["run"]);
+  if (v.contains("laboratory")) scene.laboratory = laboratory(v["laboratory"]);
   return scene;
 }
 

@@ -292,6 +292,16 @@ TEST_CASE("the rest of the keys arrive") {
   CHECK(wave.coupling.sponge.strength == 25.6);
 }
 
+TEST_CASE("laboratory tests arrive, and a scene without them has none") {
+  CHECK_FALSE(tiny().scene.laboratory);
+  const Scene scene = tiny({"laboratory={\"confinements\": [\"20 kPa\", \"1 bar\"], \"damping\": 0.5}"}).scene;
+  REQUIRE(scene.laboratory);
+  CHECK(scene.laboratory->confinements == std::vector<double>{20e3, 100e3});
+  CHECK(scene.laboratory->damping == 0.5);
+  CHECK(scene.laboratory->axial_strain == 0.1);
+  CHECK(scene.laboratory->max_steps == 200000);
+}
+
 TEST_CASE("a file that cannot be read is named") {
   try {
     read_scene("/nowhere/scene.json");
