@@ -215,8 +215,13 @@ Spectra Block::add_springs(const Grains& grains, double near, std::vector<Surfac
   for (const SurfaceContact& c : contacts) {
     if (c.elongation > near) continue;
     const double arm = contact_arm(grains.radius[c.grain], std::min(c.elongation, 0.0)), more = 1.0 + split;
-    springs.push_back({c.grain, c.normal, arm, more * c.stiffness.normal, more * c.stiffness.shear,
-                       more * c.rolling.stiffness, {more * c.damper.normal, more * c.damper.shear}});
+    springs.push_back({c.grain,
+                       c.normal,
+                       arm,
+                       more * c.stiffness.normal,
+                       more * c.stiffness.shear,
+                       more * c.rolling.stiffness,
+                       {more * c.damper.normal, more * c.damper.shear}});
     stiffness += std::max(c.stiffness.normal, c.stiffness.shear);
     bending += c.rolling.stiffness;
     viscosity += std::max(c.damper.normal, c.damper.shear);

@@ -34,10 +34,10 @@ namespace gabion::dem {
 
 /// What contacts took out of the system since the start.
 struct ContactLosses {
-  double friction = 0.0;  ///< J
-  double broken = 0.0;    ///< energy of bonds at breakage, J
-  double rolling = 0.0;   ///< plastic rolling, J
-  double damping = 0.0;   ///< dashpots of contacts, J
+  double friction = 0.0;   ///< J
+  double broken = 0.0;     ///< energy of bonds at breakage, J
+  double rolling = 0.0;    ///< plastic rolling, J
+  double damping = 0.0;    ///< dashpots of contacts, J
   double switching = 0.0;  ///< what a finite step takes, or gives where negative, at contacts that open or close, J
 
   void operator+=(const ContactLosses& other) {

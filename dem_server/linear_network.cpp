@@ -88,7 +88,8 @@ void add_surface_forces(const std::vector<SurfaceSpring>& springs, const VecFiel
     force[s.grain] += f;
     if (rotating) torque[s.grain] += splat(s.arm) * cross(s.normal, f);
     if (rotating && s.rolling_stiffness > 0.0)
-      torque[s.grain] -= splat(s.rolling_stiffness) * (angle[s.grain] - splat(dot(angle[s.grain], s.normal)) * s.normal);
+      torque[s.grain] -=
+          splat(s.rolling_stiffness) * (angle[s.grain] - splat(dot(angle[s.grain], s.normal)) * s.normal);
   }
 }
 

@@ -4,7 +4,8 @@
 
 namespace gabion::dem {
 
-void PairBuffer::connect(const std::vector<std::int32_t>& start, const std::vector<std::int32_t>& second, bool couples) {
+void PairBuffer::connect(const std::vector<std::int32_t>& start, const std::vector<std::int32_t>& second,
+                         bool couples) {
   const std::size_t grains = start.size() - 1;
   start_ = start;
   second_ = second;

@@ -190,7 +190,7 @@ void DemEngine::check_setup() const {
 }
 
 ContactSource DemEngine::source() const {
-  return {grains_,         motion.position, built_domain_, weights, contact_.law == LawKind::breakable_bond,
+  return {grains_,          motion.position, built_domain_, weights, contact_.law == LawKind::breakable_bond,
           contact_.rolling, contact_.damped};
 }
 
@@ -228,8 +228,7 @@ void DemEngine::build_contacts() {
     contact_.rolling = contact_.rolling || (contact_.rotating && resists_rolling(m));
     contact_.damped = contact_.damped || m.damping_ratio > 0.0;
   }
-  auto candidates =
-      frozen ? std::vector<Pair>{} : pairs_of(present_positions(), grains_.radius, skin_, built_domain_);
+  auto candidates = frozen ? std::vector<Pair>{} : pairs_of(present_positions(), grains_.radius, skin_, built_domain_);
   if (!clumps_.empty()) clumps_.drop_internal(candidates);
   contact_.table = first_table(source(), bonds_, candidates);
   contact_.threads = threads;

@@ -89,13 +89,12 @@ inline ContactLosses follow_surface(SurfaceContact& c, const Meeting& m, double 
     Vec before = c.drag, after = drag;
     before[3] = after[3] = 0.0;
     before = turned_with_surface(c, m, past_step, before);
-    losses.damping = 0.5 * ((before_normal + drag[3]) * rate[3] * past_step + dot(before + after, trial.spring - turned));
+    losses.damping =
+        0.5 * ((before_normal + drag[3]) * rate[3] * past_step + dot(before + after, trial.spring - turned));
     c.drag = drag;
   }
-  if (r.state != touching)
-    losses.friction = 0.5 * c.stiffness.shear * dot(turned + r.spring, trial.spring - r.spring);
-  if ((c.state ^ r.state) & touching)
-    losses.switching = switching_loss(c.stiffness.normal, c.elongation, m.elongation);
+  if (r.state != touching) losses.friction = 0.5 * c.stiffness.shear * dot(turned + r.spring, trial.spring - r.spring);
+  if ((c.state ^ r.state) & touching) losses.switching = switching_loss(c.stiffness.normal, c.elongation, m.elongation);
   const double tension = r.tension + drag[3];
   if (c.rolling.stiffness > 0.0) losses.rolling = roll_on_surface(c, m, past_step, -tension);
   c.spring = r.spring;
