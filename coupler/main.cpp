@@ -65,16 +65,17 @@ int run(const Arguments& arguments) {
   const std::string token = read_token(arguments.token_file);
   if (grains && mesh && arguments.dem == arguments.continuum)
     throw protocol::AddressError("--continuum: the same address as --dem, " + arguments.dem + "; each engine has a port of its own");
+  coupler::Activity activity;
   std::unique_ptr<coupler::EngineLink> dem, continuum;
   if (!arguments.dem.empty())
-    dem = std::make_unique<coupler::EngineLink>("dem", protocol::parse_address(arguments.dem), token, read.hash_text);
+    dem = std::make_unique<coupler::EngineLink>("dem", protocol::parse_address(arguments.dem), token, read.hash_text, activity);
   if (!arguments.continuum.empty() && mesh)
-    continuum = std::make_unique<coupler::EngineLink>("continuum", protocol::parse_address(arguments.continuum), token, read.hash_text);
+    continuum = std::make_unique<coupler::EngineLink>("continuum", protocol::parse_address(arguments.continuum), token, read.hash_text, activity);
 
   using Existing = coupler::RunFolder::Existing;
   coupler::RunFolder folder(arguments.out, arguments.overwrite ? Existing::replace : Existing::refuse);
   folder.write_text("scene.effective.json", read.effective);
-  auto simulation = std::make_unique<coupler::Simulation>(read.scene, read.hash_text, folder, dem.get(), continuum.get());
+  auto simulation = std::make_unique<coupler::Simulation>(read.scene, read.hash_text, folder, dem.get(), continuum.get(), activity);
   if (!checkpoint.is_null()) simulation->resume_from(std::move(checkpoint));
   simulation->stop_when(&interrupted);
   try {

@@ -5,17 +5,12 @@
 #include <vector>
 
 #include "dem_server/contact_table.hpp"
+#include "dem_server/dissipation.hpp"
 #include "dem_server/pair_buffer.hpp"
 #include "dem_server/rotation.hpp"
 #include "protocol/engine/motion.hpp"
 
 namespace gabion::dem {
-
-/// What contacts took out of the system since the start.
-struct ContactLosses {
-  double friction = 0.0;  ///< J
-  double broken = 0.0;    ///< energy of bonds at breakage, J
-};
 
 /// The same for a block of grains in one step.
 struct ContactSums {
@@ -30,6 +25,8 @@ class ContactForces {
   ContactTable table;
   LawKind law = LawKind::friction;
   bool rotating = true;
+  bool rolling = false;  ///< some material resists rolling
+  bool damped = false;   ///< some material has a restitution below 1
   int threads = 1;
   ContactLosses losses;
   std::uint64_t breaks = 0;                   ///< bonds broken since the start
@@ -48,7 +45,7 @@ class ContactForces {
   /// Shear springs of unbroken bonds := what the total displacements and rotations give.
   void springs_from_displacements(const VecField& displacement, const VecField& angle);
 
-  /// 1/2 sum k_n e^2 + k_s s^2 of what is bonded or touching, J.
+  /// 1/2 sum k_n e^2 + k_s s^2 + k_r theta^2 of what is bonded or touching, J.
   double energy(const VecField& displacement) const;
 
   /// Force of pair c on its first grain, N, at these displacements and with the springs of the last step.

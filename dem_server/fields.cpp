@@ -33,8 +33,8 @@ std::vector<double> table(std::vector<double> values, std::uint64_t width, Shape
 }  // namespace
 
 std::vector<std::string> DemEngine::field_names() {
-  return {"position", "displacement", "velocity", "rotation", "spin",      "force", "radius",     "mass",
-          "weight",   "contact",      "broken",   "lost",     "tie_force", "block", "wall_force", "clump"};
+  return {"position", "displacement", "velocity", "rotation",  "spin",  "force",        "radius",     "mass", "weight",
+          "contact",  "broken",       "lost",     "tie_force", "block", "block_forces", "wall_force", "clump"};
 }
 
 std::optional<std::vector<double>> DemEngine::field(const std::string& name, Shape& shape) const {
@@ -72,6 +72,7 @@ std::optional<std::vector<double>> DemEngine::field(const std::string& name, Sha
          shape = {state.empty() ? 0u : 1u, state.size()};
          return state;
        }},
+      {"block_forces", [&] { return flat(block_.present() ? block_.recent_forces() : VecField{}, shape); }},
       {"clump",
        [&] {
          const std::vector<std::int32_t>& of = clumps_.body_of();
@@ -105,6 +106,9 @@ void DemEngine::set_field(const std::string& name, std::span<const double> value
   finish_last_step();
   VecField& field = *found->second;
   for (std::size_t i = 0; i < grains_.size(); ++i) field[i] = vec(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+  if (&field == &rotation_.spin)
+    for (std::size_t i = 0; i < grains_.size(); ++i)
+      if (!grains_.material_of(i).rotates) field[i] = Vec{};
   if (!clumps_.empty()) {
     if (name == "displacement") clumps_.take_displacement(motion);
     if (name == "velocity") clumps_.take_velocity(motion, rotation_);

@@ -33,7 +33,8 @@ std::vector<dem::GrainMaterial> to_materials(const protocol::GrainMaterials& m) 
   std::vector<dem::GrainMaterial> materials;
   for (std::size_t k = 0; k < m.density.size(); ++k)
     materials.push_back({m.normal_stiffness[k], m.shear_stiffness[k], m.density[k], m.friction[k], m.normal_strength[k],
-                         m.shear_strength[k]});
+                         m.shear_strength[k], m.rolling_stiffness[k], m.rolling_friction[k], m.restitution[k],
+                         m.rotation[k] != 0});
   return materials;
 }
 

@@ -37,8 +37,14 @@ void DemEngine::close_ledger() {
               (contact_options_.rotations ? rotation_.kinetic_energy() : 0.0) + clumps_turning + turning);
   ledger_.add("elastic", Ledger::Kind::stored, elastic_);
   ledger_.add("gravity", Ledger::Kind::stored, gravity_);
-  ledger_.add("friction", Ledger::Kind::lost, contact_.losses.friction + walls_.friction_work + block_.friction_work);
-  ledger_.add("broken_bonds", Ledger::Kind::lost, contact_.losses.broken);
+  ContactLosses lost = contact_.losses;
+  lost += walls_.losses;
+  lost += block_.losses;
+  ledger_.add("friction", Ledger::Kind::lost, lost.friction);
+  ledger_.add("rolling", Ledger::Kind::lost, lost.rolling);
+  ledger_.add("contact_damping", Ledger::Kind::lost, lost.damping);
+  ledger_.add("broken_bonds", Ledger::Kind::lost, lost.broken);
+  ledger_.add("switching", Ledger::Kind::lost, lost.switching);
   ledger_.add("damping", Ledger::Kind::lost, -damped);
   ledger_.add("dashpots", Ledger::Kind::lost, -motion.dashpot_work.until_now());
   ledger_.add("sponge", Ledger::Kind::lost, -sponge_.work.until_now());

@@ -19,10 +19,12 @@ protocol::ConnectionOptions connection_options() {
 }  // namespace
 
 EngineLink::EngineLink(const std::string& role, const protocol::Address& address, const std::string& token,
-                       const std::string& scene_hash)
+                       const std::string& scene_hash, const Activity& activity)
     : role_(role),
       connection_(protocol::Connection::connect(address.host, address.port, connect_deadline, role + "_server",
-                                                connection_options())) {
+                                                connection_options())),
+      activity_(activity),
+      heartbeats_(connection_, [this] { return present(); }, heartbeat_period) {
   protocol::Hello hello;
   hello.protocol_version = protocol::protocol_version;
   hello.token = token;
@@ -34,6 +36,15 @@ EngineLink::EngineLink(const std::string& role, const protocol::Address& address
   if (welcome.role != role)
     throw protocol::AddressError("the engine at " + address.host + ":" + std::to_string(address.port) + " is '" + welcome.role +
                                   "', but '" + role + "' was wanted: swap --dem and --continuum");
+  connection_.send(present());  // from the first on the engine counts on the others
+  heartbeats_.work_begins();
+}
+
+protocol::Heartbeat EngineLink::present() const {
+  protocol::Heartbeat heartbeat;
+  heartbeat.phase = activity_.phase();
+  heartbeat.step = next_step_;
+  return heartbeat;
 }
 
 std::span<const double> EngineLink::receive_gap(std::size_t slots, std::uint64_t step) {

@@ -9,7 +9,9 @@
 #include <stdexcept>
 #include <zlib.h>
 
+#include "coupler/ground/loose_grains.hpp"
 #include "coupler/results/earlier_state.hpp"
+#include "coupler/scene/packing_file.hpp"
 #include "coupler/run/clumps.hpp"
 #include "protocol/engine/hash.hpp"
 
@@ -96,9 +98,15 @@ protocol::GrainMaterials grain_materials(const std::vector<scene::Material>& mat
     m.friction.data.push_back(material.friction);
     m.normal_strength.data.push_back(material.normal_strength);
     m.shear_strength.data.push_back(material.shear_strength);
+    m.rolling_stiffness.data.push_back(material.rolling_stiffness);
+    m.rolling_friction.data.push_back(material.rolling_friction);
+    m.restitution.data.push_back(material.restitution);
+    m.rotation.data.push_back(material.rotates ? 1 : 0);
   }
-  for (auto* field : {&m.normal_stiffness, &m.shear_stiffness, &m.density, &m.friction, &m.normal_strength, &m.shear_strength})
+  for (auto* field : {&m.normal_stiffness, &m.shear_stiffness, &m.density, &m.friction, &m.normal_strength, &m.shear_strength,
+                      &m.rolling_stiffness, &m.rolling_friction, &m.restitution})
     field->set_shape(std::array<std::uint64_t, 1>{field->data.size()});
+  m.rotation.set_shape(std::array<std::uint64_t, 1>{m.rotation.data.size()});
   return m;
 }
 
@@ -139,8 +147,29 @@ std::filesystem::path Cache::file(const std::string& kind, std::uint64_t key) co
   return folder_ / (kind + "-" + name + ".bin");
 }
 
+namespace {
+
+/// Grains as a file gives them; all of them stay.
+Packing read_packing(const scene::Scene& scene) {
+  const scene::PackingFile file = scene::read_packing_file(scene.grains.file);
+  Packing packing;
+  packing.position = file.position;
+  packing.radius = file.radius;
+  packing.gap = scene.grains.bond_gap;
+  const double grains = static_cast<double>(packing.radius.size());
+  packing.contacts_per_grain = 2.0 * static_cast<double>(contact_pairs(packing, scene.ground).size()) / grains;
+  double volume = 1.0, solid = 0.0;
+  for (int axis = 0; axis < 3; ++axis) volume *= scene.ground.box.hi[axis] - scene.ground.box.lo[axis];
+  for (const double r : packing.radius) solid += 4.0 / 3.0 * std::acos(-1.0) * r * r * r;
+  packing.solid_fraction = solid / volume;
+  return packing;
+}
+
+}  // namespace
+
 Packing obtain_packing(const scene::Scene& scene, EngineLink* dem, const Cache& cache, const Log& log) {
-  if (scene.grains.packing != "random") return make_lattice(scene);
+  if (scene::is_lattice(scene.grains)) return make_lattice(scene);
+  if (scene.grains.packing == "file") return read_packing(scene);
   protocol::Pack pack;
   pack.box_lo = flatten(scene.ground.box.lo);
   pack.box_hi = flatten(scene.ground.box.hi);
@@ -200,7 +229,7 @@ scene::Scene lattice_sample(const scene::Scene& scene, const Packing& lattice) {
 
 Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_packing, EngineLink* dem, const Cache& cache,
                              const Log& log) {
-  const bool lattice = whole.grains.packing != "random";
+  const bool lattice = scene::is_lattice(whole.grains);
   const scene::Scene scene = lattice ? lattice_sample(whole, whole_packing) : whole;
   const Packing packing = lattice ? make_lattice(scene) : whole_packing;
   const scene::Material& soil = scene.material(scene.ground.material);

@@ -45,6 +45,7 @@ bool Simulation::checkpoint_due() const {
 }
 
 void Simulation::save_checkpoint() {
+  activity_.is("writing a checkpoint");
   nlohmann::json state{
       {"scene_hash", scene_hash_}, {"scene", resumed_.is_null() ? scene_.name : resumed_.at("scene").get<std::string>()},
       {"step", stepper_->step()}, {"time", stepper_->time()}, {"dt", dt_},

@@ -37,7 +37,8 @@ struct Interrupted : std::runtime_error {
 class Simulation {
  public:
   /// Links may be null where the model does without them.
-  Simulation(const scene::Scene& scene, const std::string& scene_hash, RunFolder& folder, EngineLink* dem, EngineLink* continuum);
+  Simulation(const scene::Scene& scene, const std::string& scene_hash, RunFolder& folder, EngineLink* dem, EngineLink* continuum,
+             Activity& activity);
 
   /// Everything; the summary is returned and written as summary.json. Throws the errors above and the protocol's.
   nlohmann::json run();
@@ -75,6 +76,7 @@ class Simulation {
   RunFolder& folder_;
   EngineLink* dem_;
   EngineLink* continuum_;
+  Activity& activity_;
   Log log_;
   const volatile std::sig_atomic_t* stop_ = nullptr;
   Packing packing_;

@@ -162,7 +162,7 @@ void check_gravity(Checker& check) {
       if (!stage.gravity) continue;
       const auto holds = [&](int face) {
         const Face& f = faces[face];
-        return f.kind == "fixed" || ((f.kind == "roller" || f.kind == "seat") && face / 2 == axis) ||
+        return f.kind == "fixed" || (f.kind == "wall" && face / 2 == axis) || ((f.kind == "roller" || f.kind == "seat") && face / 2 == axis) ||
                (f.kind == "velocity" && f.direction[axis] != 0.0);
       };
       bool held = false;

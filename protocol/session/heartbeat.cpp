@@ -2,8 +2,8 @@
 
 namespace gabion::protocol {
 
-Heartbeats::Heartbeats(Connection& connection, const engine::Engine& engine, Duration period)
-    : connection_(connection), engine_(engine), period_(period), thread_([this] { watch(); }) {}
+Heartbeats::Heartbeats(Connection& connection, std::function<Heartbeat()> present, Duration period)
+    : connection_(connection), present_(std::move(present)), period_(period), thread_([this] { watch(); }) {}
 
 Heartbeats::~Heartbeats() {
   {
@@ -32,7 +32,7 @@ void Heartbeats::work_ends() {
 void Heartbeats::watch() {
   std::unique_lock lock(mutex_);
   while (!ending_) {
-    if (!working_ || client_is_gone_) {
+    if (!working_ || peer_is_gone_) {
       changed_.wait(lock);
       continue;
     }
@@ -41,14 +41,11 @@ void Heartbeats::watch() {
       continue;
     }
     next_ += period_;
-    const std::uint64_t step = engine_.current_step;
-    Heartbeat message;
-    message.phase = engine_.phase.load();
-    message.step = step;
+    const Heartbeat message = present_();
     try {
-      connection_.send(message, step);
+      connection_.send(message, message.step);
     } catch (const WireError&) {
-      client_is_gone_ = true;
+      peer_is_gone_ = true;
     }
   }
 }

@@ -62,7 +62,7 @@ bool Service::take_steps(const Run& request, std::uint64_t& taken) {
       const bool go_on = engine_.step(context, exchange);
       ++taken;
       if (!go_on) break;
-      if (heartbeats_->client_is_gone())
+      if (heartbeats_->peer_is_gone())
         throw ConnectionLost(connection_->peer(), "sending HEARTBEAT", step, "the connection is lost");
     }
   } catch (...) {

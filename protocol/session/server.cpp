@@ -86,10 +86,10 @@ int serve_main(int argc, char** argv, const std::string& name, const std::functi
   app.add_option("--accept-timeout", accept_timeout, "s to wait for a client")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--io-timeout", io_timeout, "s to wait for the answer to a step, and for what is sent to be taken")
+  app.add_option("--io-timeout", io_timeout, "s to wait for the answer to a step, for a client's next heartbeat, and for what is sent to be taken")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--idle-timeout", idle_timeout, "s to wait for the next request")
+  app.add_option("--idle-timeout", idle_timeout, "s to wait for the next request of a client that sends no heartbeats")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--spin", spin, "microseconds to look for an answer before sleeping")

@@ -31,8 +31,19 @@ Service::Outcome Service::serve(Connection& connection, const std::string& token
   options_ = options;
   state_ = SessionState::connected;
   if (!shake_hands(token)) return Outcome::refused;
-  heartbeats_ = std::make_unique<Heartbeats>(connection, engine_, options.heartbeat_period);
-  while (state_ != SessionState::closed) serve_request();
+  const auto present = [this] {
+    Heartbeat heartbeat;
+    heartbeat.phase = engine_.phase.load();
+    heartbeat.step = engine_.current_step;
+    return heartbeat;
+  };
+  heartbeats_ = std::make_unique<Heartbeats>(connection, present, options.heartbeat_period);
+  try {
+    while (state_ != SessionState::closed) serve_request();
+  } catch (const WireError&) {
+    if (checkpoint_step_) std::cerr << "the client's last CHECKPOINT was at step " << *checkpoint_step_ << '\n';
+    throw;
+  }
   return Outcome::finished;
 }
 
@@ -81,15 +92,7 @@ bool Service::shake_hands(const std::string& token) {
 }
 
 void Service::serve_request() {
-  connection_->at_step(engine_.current_step);
-  const Frame frame = [&] {
-    try {
-      return connection_->receive(options_.idle_timeout, "the next request");
-    } catch (const Timeout& error) {
-      reply_error("timeout", error.what(), "", "send a request or BYE within the idle time of the engine");
-      throw;
-    }
-  }();
+  const Frame frame = next_request();
   const bool late_answer = multipliers_expected_ && frame.header.type == Multipliers::id;
   multipliers_expected_ = false;
   // An ERROR outside a run tells of trouble elsewhere; there is nothing here to end.
@@ -101,6 +104,27 @@ void Service::serve_request() {
     reply_to_exception(name);
   }
   engine_.phase = "idle";
+}
+
+/// Waits for a request. A client that has sent a heartbeat is known to send them, and is gone when they cease.
+Frame Service::next_request() {
+  connection_->at_step(engine_.current_step);
+  for (;;) {
+    const Duration deadline = client_beats_ ? options_.exchange_timeout : options_.idle_timeout;
+    try {
+      const Frame frame = connection_->receive(deadline, awaited_request_.c_str());
+      if (frame.header.type != Heartbeat::id) return frame;
+      Heartbeat heartbeat;
+      connection_->decode(frame, heartbeat);
+      client_beats_ = true;
+      awaited_request_ = "the next request, last heard of it at '" + heartbeat.phase + "'";
+    } catch (const Timeout& error) {
+      reply_error("timeout", error.what(), "",
+                  client_beats_ ? "send a heartbeat a second between requests, or start the engine with a longer --io-timeout"
+                                : "send a request or BYE within the idle time of the engine");
+      throw;
+    }
+  }
 }
 
 void Service::handle(const Frame& frame) {

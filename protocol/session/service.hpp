@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,8 @@ namespace gabion::protocol {
 struct SessionOptions {
   std::string software = "unnamed";                       ///< name and version, for WELCOME
   Duration handshake_timeout = std::chrono::seconds(10);  ///< for HELLO
-  Duration idle_timeout = std::chrono::seconds(600);      ///< for the next request
-  Duration exchange_timeout = std::chrono::seconds(30);   ///< for MULTIPLIERS
+  Duration idle_timeout = std::chrono::seconds(600);      ///< for the next request of a client without heartbeats
+  Duration exchange_timeout = std::chrono::seconds(30);   ///< for MULTIPLIERS, and for a client's next heartbeat
   Duration heartbeat_period = std::chrono::seconds(1);
 };
 
@@ -56,6 +57,7 @@ class Service {
  private:
   bool shake_hands(const std::string& token);
   void serve_request();
+  Frame next_request();
   void handle(const Frame& frame);
   void add_shared_messages();
   RunDone run(const Run& request);
@@ -81,6 +83,9 @@ class Service {
   Connection* connection_ = nullptr;
   std::unique_ptr<Heartbeats> heartbeats_;
   SessionState state_ = SessionState::connected;
+  bool client_beats_ = false;                         ///< the client has sent a heartbeat
+  std::string awaited_request_ = "the next request";  ///< for errors, with the phase of its last heartbeat
+  std::optional<std::uint64_t> checkpoint_step_;      ///< of the last CHECKPOINT
   bool run_failed_ = false;            ///< the last run ended inside a step
   bool multipliers_expected_ = false;  ///< a failed run may have left a GAP whose answer is under way
 };

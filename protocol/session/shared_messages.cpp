@@ -156,6 +156,7 @@ void Service::add_shared_messages() {
   on<Checkpoint>([this](const Checkpoint&) {
     protocol::State state;
     state.blob = engine_.checkpoint();
+    checkpoint_step_ = engine_.current_step;
     return state;
   });
   on<Restore>([this](const Restore& m) {

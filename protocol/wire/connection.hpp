@@ -100,7 +100,10 @@ class Connection {
   /// Ends the connection; later calls throw ConnectionLost.
   void close();
   /// Bytes on the wire since the connection was made.
-  std::uint64_t bytes_sent() const { return bytes_sent_; }
+  std::uint64_t bytes_sent() const {
+    const std::lock_guard lock(*send_mutex_);
+    return bytes_sent_;
+  }
   std::uint64_t bytes_received() const { return bytes_received_; }
 
   std::function<void(const Heartbeat&)> on_heartbeat;

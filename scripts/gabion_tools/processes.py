@@ -42,6 +42,13 @@ def stop(process):
         process.wait()
 
 
+def checkpoint_hint(folder):
+    """Where a run that was broken off can be taken up again; empty when it cannot."""
+    if not (folder / "checkpoint").exists():
+        return ""
+    return f"\nlast checkpoint: {short(folder / 'checkpoint')}; go on with gabion resume {short(folder)}"
+
+
 class Engine:
     """One dem_server or continuum_server, from its start to its end; a context manager."""
 
@@ -125,7 +132,8 @@ def watch(command, engines, token, log_path):
             if died and time.monotonic() - died > REPORT_GRACE:
                 engine = ended[0]
                 raise Failure(f"{engine.name} ended with code {engine.process.returncode} and the coupler did not "
-                              f"notice. The end of {short(engine.log_path)}:\n{tail(engine.log_path)}")
+                              f"notice. The end of {short(engine.log_path)}:\n{tail(engine.log_path)}"
+                              + checkpoint_hint(engine.log_path.parent))
     except KeyboardInterrupt:
         coupler.send_signal(signal.SIGINT)  # lets it close its files
         try:

@@ -265,6 +265,10 @@ class Client:
         self.send(name, **fields)
         return self.receive(MESSAGES[name]["reply"])[0]
 
+    def beat(self, phase="", step=0):
+        """One heartbeat between two requests; the engine counts on more from now on, about one a second."""
+        self.send("HEARTBEAT", phase=phase, step=step, frame_step=step)
+
     def hello(self, token, version=VERSION):
         return self.ask("HELLO", protocol_version=version, token=token, role="coupler", software="reference client")
 

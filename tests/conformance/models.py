@@ -21,7 +21,8 @@ def set_up_chain(client, grains=2, measure=0):
     """Touching grains along x, bonded, that can neither rotate nor slide."""
     client.ask("OPTIONS", **options(measure))
     client.ask("GRAIN_MATERIALS", normal_stiffness=[STIFFNESS], shear_stiffness=[STIFFNESS], density=[DENSITY],
-               friction=[math.inf], normal_strength=[math.inf], shear_strength=[math.inf])
+               friction=[math.inf], normal_strength=[math.inf], shear_strength=[math.inf], rolling_stiffness=[0.0],
+               rolling_friction=[0.0], restitution=[1.0], rotation=[1])
     client.ask("GRAINS", position=[[2 * RADIUS * i, 0, 0] for i in range(grains)], radius=[RADIUS] * grains,
                material=[0] * grains)
     client.ask("CONTACT_OPTIONS", geometry="frozen", rotations=0, skin=0.0)

@@ -175,6 +175,32 @@ class SessionCases:
         self.assertEqual(self.refusal(client.receive, "OK").code, "timeout")
         self.assertEqual(self.status()[0], 1)
 
+    def test_a_client_that_has_sent_no_heartbeat_may_wait(self):
+        client = self.prepared("--io-timeout", "0.3")
+        time.sleep(0.8)
+        client.ask("RUN", steps=1, dt=self.dt)
+
+    def test_a_client_that_sends_heartbeats_is_missed_when_they_cease(self):
+        client = self.prepared("--io-timeout", "0.5", "--idle-timeout", "0.6")
+        for _ in range(6):
+            client.beat("writing", 7)
+            time.sleep(0.2)
+        client.ask("RUN", steps=3, dt=self.dt, first_step=7)
+        client.ask("CHECKPOINT")
+        client.beat("thinking", 10)
+        began = time.monotonic()
+        error = self.refusal(client.receive, "OK")
+        waited = time.monotonic() - began
+        self.assertEqual(error.code, "timeout")
+        self.assertEqual(error.step, 10)
+        self.assertIn("'thinking'", error.message)
+        self.assertGreater(waited, 0.4)
+        self.assertLess(waited, 1.0)
+        status, errors = self.status()
+        self.assertEqual(status, 1)
+        for words in ("coupler", "step 10", "last CHECKPOINT was at step 10"):
+            self.assertIn(words, errors)
+
     def test_an_engine_that_dies_or_freezes_is_noticed(self):
         client = self.prepared(timeout=0.5)
         self.tie_first(client)

@@ -14,6 +14,11 @@ struct Malformed {
   void encode(Writer& writer) const { writer.put(std::uint8_t{1}); }
 };
 
+struct MalformedHeartbeat {
+  static constexpr std::uint16_t id = Heartbeat::id;
+  void encode(Writer& writer) const { writer.put(std::uint8_t{1}); }
+};
+
 }  // namespace
 
 TEST_CASE("a client with the token is welcomed, served and let go") {
@@ -233,6 +238,42 @@ TEST_CASE("a client that does not ask for anything is let go at the idle deadlin
   session.greet_and_prepare();
   CHECK(session.client().expect<Error>(1s).code == "timeout");
   CHECK_THROWS_AS(session.outcome.get(), Timeout);
+}
+
+TEST_CASE("a client that sends heartbeats is let go when they cease, not before") {
+  Session session;
+  session.options.exchange_timeout = 300ms;
+  session.greet_and_prepare();
+  Heartbeat heartbeat;
+  heartbeat.phase = "writing results";
+  for (int beat = 0; beat < 8; ++beat) {
+    session.client().send(heartbeat);
+    std::this_thread::sleep_for(100ms);
+  }
+  session.ask_for<RunDone>(Session::steps(3));
+  const double waited = seconds_of([&] {
+    const Error error = session.client().expect<Error>(2s);
+    CHECK(error.code == "timeout");
+    CHECK_THAT(error.message, Catch::Contains("'writing results'") && Catch::Contains("step 3"));
+  });
+  CHECK(waited > 0.2);
+  CHECK(waited < 1.0);
+  CHECK_THROWS_AS(session.outcome.get(), Timeout);
+}
+
+TEST_CASE("a client that sends no heartbeats has the idle deadline, however short that of a step") {
+  Session session;
+  session.options.exchange_timeout = 50ms;
+  session.greet_and_prepare();
+  std::this_thread::sleep_for(300ms);
+  session.ask_for<RunDone>(Session::steps(3));
+}
+
+TEST_CASE("a heartbeat that does not decode ends the session") {
+  Session session;
+  session.greet_and_prepare();
+  session.client().send(MalformedHeartbeat{});
+  CHECK_THROWS_AS(session.outcome.get(), BadMessage);
 }
 
 TEST_CASE("a client that vanishes is found at once") {

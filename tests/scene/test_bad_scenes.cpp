@@ -43,7 +43,7 @@ void check_mistakes(const std::string& scene, const std::vector<Mistake>& mistak
 
 TEST_CASE("unknown, missing and mistyped keys") {
   check_mistakes("tiny.json", {
-      {{"grains.radios=1"}, "grains.radios", "unknown key; did you mean 'radius'? known here: contacts_per_grain, geometry,"},
+      {{"grains.radios=1"}, "grains.radios", "unknown key; did you mean 'radius'? known here: bond_gap, contacts_per_grain,"},
       {{"mash={}"}, "mash", "did you mean 'mesh'?"},
       {{"colour=red"}, "colour", "unknown key; known here: block, coupling"},
       {{"stages[0].dampng=0.1"}, "stages[0].dampng", "did you mean 'damping'?"},
@@ -68,6 +68,16 @@ TEST_CASE("unknown, missing and mistyped keys") {
       {{"run.measure_energy=maybe"}, "run.measure_energy", "'maybe', expected true or false"},
       {{"faces.zmin=5"}, "faces.zmin", "5, expected one of free, fixed, roller, seat, absorbing, or an object with pressure"},
       {{"gabion=2"}, "gabion", "2, expected 1"},
+  });
+}
+
+TEST_CASE("packings from files") {
+  check_mistakes("rigid_box.json", {
+      {{"grains.file=data/rigid_bx.txt"}, "grains.file", "there is no file"},
+      {{"grains.file=null"}, "grains.file", "missing, expected a file with one grain a row"},
+      {{"grains.file=rigid_box.json"}, "grains.file", "is not four numbers x y z radius"},
+      {{"grains.bond_gap=-0.1"}, "grains.bond_gap", "expected at least 0"},
+      {{"faces.xmin={\"wall\": {}}"}, "faces.xmin.wall.friction", "missing"},
   });
 }
 

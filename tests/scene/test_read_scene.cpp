@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "coupler/scene/packing_file.hpp"
 #include "coupler/scene/read_scene.hpp"
 #include "coupler/scene/schema.hpp"
 #include "tests/scene/scene_files.hpp"
@@ -14,6 +16,7 @@ namespace {
 
 std::vector<std::string> models_of(const std::filesystem::path& file) {
   if (file.stem() == "impact" || file.stem() == "tiny_clumps") return {"dem", "bridging", "edge"};
+  if (file.stem() == "rigid_box") return {"dem"};
   return {"dem", "continuum", "bridging", "edge"};
 }
 
@@ -213,6 +216,23 @@ TEST_CASE("grain sizes in three forms") {
   const Grains lattice = read_scene(scenarios() / "tiny_lattice.json").scene.grains;
   CHECK(lattice.radius.size() == 1);
   CHECK(lattice.geometry == "frozen");
+}
+
+TEST_CASE("grains from a file bring their radii, and walls their friction") {
+  const ReadResult read = read_scene(scenarios() / "rigid_box.json");
+  const Grains& grains = read.scene.grains;
+  CHECK(grains.packing == "file");
+  const PackingFile file = read_packing_file(grains.file);
+  CHECK(file.radius.size() == 7033);
+  CHECK(grains.radius.front() == Approx(*std::min_element(file.radius.begin(), file.radius.end())).epsilon(1e-9));
+  CHECK(grains.radius.back() == Approx(*std::max_element(file.radius.begin(), file.radius.end())).epsilon(1e-9));
+  CHECK(read.scene.faces[4].kind == "wall");
+  CHECK(read.scene.faces[4].friction == 1.0);
+  CHECK(read.scene.faces[5].kind == "free");
+  // the effective scene names the file whole, so that it can be read from elsewhere
+  const ReadResult again = read_scene_text(read.effective, "again.json", "/", {});
+  CHECK(again.scene.grains.file == grains.file);
+  CHECK(again.hash == read.hash);
 }
 
 TEST_CASE("the block is placed, pointed and released") {

@@ -80,8 +80,8 @@ class Failures(SystemTest):
         self.check_results_can_be_read()
 
     def test_coupler_frozen(self):
-        # it may be caught in the middle of a step or between two requests: each wait has a deadline of its own
-        before = self.run_long("--io-timeout", "2", "--idle-timeout", "2")
+        # it may be caught in the middle of a step or between two requests: the deadline is the same
+        before = self.run_long("--io-timeout", "2")
         self.run_process.send_signal(signal.SIGSTOP)
         for engine in (self.dem, self.continuum):
             ended = self.ended(engine, 2 + SOON)
@@ -89,6 +89,22 @@ class Failures(SystemTest):
             self.assertIn("coupler", ended.error)
             self.assertRegex(ended.error, "MULTIPLIERS|the next request")
             self.assertGreaterEqual(self.step_named_in(ended.error), before)
+
+    def test_coupler_frozen_between_two_requests(self):
+        """While grains are packed the other engine waits: as long as the coupler shows that it works, no longer."""
+        deadline = 2.0
+        addresses = self.engines("--io-timeout", str(deadline))
+        process = self.coupler("column.json", *addresses, "--set", "ground.box.lo[2]=-24 m")
+        time.sleep(deadline + 1.5)
+        for alive in (process, self.dem, self.continuum):
+            self.assertIsNone(alive.poll(), "ended while the grains were packed")
+        process.send_signal(signal.SIGSTOP)
+        begin = time.monotonic()
+        ended = self.ended(self.continuum, deadline + SOON)
+        self.assertGreater(time.monotonic() - begin, 0.5 * deadline)
+        self.assertEqual(ended.status, 1, ended)
+        self.assertIn("coupler", ended.error)
+        self.assertIn("'preparing'", ended.error)
 
     def test_coupler_interrupted(self):
         self.run_long()
