@@ -29,6 +29,19 @@ Loop loop_of(const ContactForces& f, bool scattering) {
                   : loop_with<Law, LoopParts<true, false, false>>(scattering);
 }
 
+/// Loops of a ground that is strained between steps.
+Loop choose_stretched(const ContactForces& f, bool scattering) {
+  switch (f.law) {
+    case LawKind::elastic_bond:
+      return loop_of<Stretched<ElasticBond>>(f, scattering);
+    case LawKind::breakable_bond:
+      return loop_of<Stretched<BreakableBond>>(f, scattering);
+    case LawKind::friction:
+      break;
+  }
+  return loop_of<Stretched<Friction>>(f, scattering);
+}
+
 Loop choose(const ContactForces& f, bool scattering) {
   switch (f.law) {
     case LawKind::elastic_bond:
@@ -53,21 +66,23 @@ void ContactForces::add(std::size_t first, std::size_t last, double past_step, c
                         engine::Motion& motion, Rotation& rotation) {
   if (first >= last) return;
   const bool scattering = threads <= 1;
-  const Loop loop = choose(*this, scattering);
+  const Loop loop = (stretched ? choose_stretched : choose)(*this, scattering);
   const LoopArrays arrays{
       table.start.data(),     table.second.data(),   table.branch.data(),  table.spring.data(),
       table.stiffness.data(), table.strength.data(), table.state.data(),   motion.displacement.data(),
       motion.velocity.data(), rotation.spin.data(),  motion.force.data(),  rotation.torque.data(),
       buffer_.force.data(),   buffer_.moment.data(), grains.radius.data(), past_step,
       table.bending.data(),   buffer_.couple.data(), table.rolling.data(), table.drag.data(),
-      table.damper.data()};
+      table.damper.data(),    strain_rate};
   const std::size_t blocks = (last - first + block - 1) / block;
   sums_.assign(blocks, ContactSums{});
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
   for (std::size_t b = 0; b < blocks; ++b)
     loop(arrays, first + b * block, std::min(last, first + (b + 1) * block), sums_[b]);
   if (!scattering) buffer_.gather(first, last, rotating, motion.force, rotation.torque, threads);
+  if (first == 0) virial = Vec{};
   for (std::size_t b = 0; b < blocks; ++b) {
+    virial += sums_[b].virial;
     losses += sums_[b].losses;
     if (sums_[b].breaks > 0) book_breaks(first + b * block, std::min(last, first + (b + 1) * block));
   }

@@ -16,6 +16,7 @@ namespace gabion::dem {
 struct ContactSums {
   ContactLosses losses;
   std::int32_t breaks = 0;
+  Vec virial{};  ///< of a stretched ground only, N m
 };
 
 enum class LawKind { elastic_bond, breakable_bond, friction };
@@ -32,6 +33,10 @@ class ContactForces {
   std::uint64_t breaks = 0;                   ///< bonds broken since the start
   std::vector<std::int32_t> broken_of;        ///< broken bonds per grain
   std::vector<std::int32_t> broken_as_first;  ///< the same, counted at the pair's first grain only
+
+  bool stretched = false;  ///< the ground may be strained between steps, see DemEngine::stretch
+  Vec strain_rate{};       ///< of the last such strain, over the branches it led to, 1/s
+  Vec virial{};            ///< when stretched: sum of force on i times branch i to j, x y z, at the last call, N m
 
   /// Call when the table was replaced.
   void table_changed(std::size_t grains);

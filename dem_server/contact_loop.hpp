@@ -19,6 +19,7 @@
 // nothing of them is left.
 
 #include "dem_server/contact_forces.hpp"
+#include "dem_server/stretched_law.hpp"
 #include "dem_server/vector_kernels.hpp"
 
 namespace gabion::dem {
@@ -41,6 +42,7 @@ struct LoopArrays {
   const RollingResistance* rolling;
   Vec* drag;
   const ContactDamper* damper;
+  Vec strain_rate;  // of the ground in the last step; read for a Stretched law only
 };
 
 /// What one contact does to its grains. couple: on i, N m.
@@ -91,7 +93,7 @@ inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, Co
   const ContactSpring k = a.stiffness[c];
 
   // kinematics of the last step
-  const Vec dv = a.velocity[j] - a.velocity[i];
+  const Vec dv = relative_velocity<Law>(a.velocity[j] - a.velocity[i], a.strain_rate, D);
   const Vec dt = splat(a.past_step);
   const Vec middle = fnma(splat(0.5 * a.past_step), dv, D);
   Vec slip = dv;
@@ -167,6 +169,7 @@ inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, Co
     action.arm_i = 0.5 * d + k.half_difference;
     action.arm_j = 0.5 * d - k.half_difference;
   }
+  if constexpr (is_stretched<Law>) sums.virial += action.force * D;
   return true;
 }
 

@@ -62,7 +62,7 @@ void DemEngine::begin_step(const StepContext& context) {
 }
 
 void DemEngine::refresh_contacts() {
-  const double limit = 0.25 * skin_ * skin_;  // half the skin, squared
+  const double limit = search_limit();
   bool moved = false;
 #pragma omp parallel for schedule(static) reduction(|| : moved) num_threads(threads) if (threads > 1)
   for (std::size_t i = 0; i < grains_.size(); ++i) {
@@ -79,6 +79,7 @@ void DemEngine::refresh_contacts() {
   contact_.table_changed(grains_.size());
   find_surfaces();
   displacement_at_build_ = motion.displacement;
+  strain_at_build_ = 0.0;
   ++rebuilds_;
   count_lost();
 }
@@ -125,6 +126,7 @@ void DemEngine::drift(const StepContext& context) {
   if (!walls_.empty()) walls_.drift(context.dt);
   if (block_.present()) block_.drift(context);
   past_step_ = context.dt;
+  contact_.strain_rate = Vec{};
 }
 
 /// Springs follow the last drift at the next force evaluation: brings that forward, before velocities

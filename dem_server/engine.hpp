@@ -58,6 +58,19 @@ class DemEngine : public engine::Engine {
                   const std::vector<std::int32_t>& row_ptr, const std::vector<std::int32_t>& columns,
                   const std::vector<double>& values);
 
+  // A ground that is periodic in every direction may be strained between steps (stretch.cpp).
+
+  /// From here on contacts know the strain and virial() is kept. Call after prepare, which ends it when it builds
+  /// the contacts anew. Throws RequestError where the ground cannot be strained.
+  void allow_stretch();
+  bool stretched() const { return contact_.stretched; }
+  /// Maps the box and the grains, contacts included, by x -> x + strain (x - centre), along x, y, z. At most once
+  /// after each step; velocities and displacements stay those beyond the homogeneous motion.
+  void stretch(Vec strain);
+  /// Sum over contacts of the force on i times the branch from i to j, by components x, y, z, at the forces of the
+  /// last step: the volume times the mean normal stresses, tension positive, N m.
+  Vec virial() const { return contact_.virial; }
+
   // engine::Engine
 
   void prepare() override;
@@ -82,6 +95,10 @@ class DemEngine : public engine::Engine {
   const Grains& grains() const { return grains_; }
   const ContactTable& contacts() const { return contact_.table; }
   const std::vector<Pair>& bonds() const { return bonds_; }
+  /// Whether the grain may rotate, boundary groups apart.
+  bool rotates(std::size_t grain) const {
+    return contact_options_.rotations && grains_.material_of(grain).rotates;
+  }
   Domain domain() const;
   const Rotation& rotation() const { return rotation_; }
   const Block& block() const { return block_; }
@@ -111,6 +128,7 @@ class DemEngine : public engine::Engine {
   // the step (engine.cpp), in call order
   void begin_step(const engine::StepContext& context);
   void refresh_contacts();
+  double search_limit() const;
   std::vector<Pair> near_pairs() const;
   void external_forces(const engine::StepContext& context);
   void surface_forces();
@@ -146,6 +164,7 @@ class DemEngine : public engine::Engine {
   Sponge sponge_;
 
   VecField displacement_at_build_;
+  double strain_at_build_ = 0.0;  ///< sum of the largest strains since the last search
   std::uint64_t held_groups_ = 0;  ///< constraint groups for which rotations were held
   double step_size_ = 0.0;         ///< for which the mobilities were made, s
   double past_step_ = 0.0;         ///< dt of the drift that led to the present state; 0: none

@@ -33,8 +33,9 @@ std::vector<double> table(std::vector<double> values, std::uint64_t width, Shape
 }  // namespace
 
 std::vector<std::string> DemEngine::field_names() {
-  return {"position", "displacement", "velocity", "rotation",  "spin",  "force",        "radius",     "mass", "weight",
-          "contact",  "broken",       "lost",     "tie_force", "block", "block_forces", "wall_force", "clump"};
+  return {"position", "displacement", "velocity", "rotation", "spin",      "force", "radius",    "mass",
+          "weight",   "contact",      "broken",   "lost",     "tie_force", "block", "block_forces", "wall_force",
+          "clump"};
 }
 
 std::optional<std::vector<double>> DemEngine::field(const std::string& name, Shape& shape) const {

@@ -1,6 +1,10 @@
 // dem_server: the discrete-element engine behind the protocol.
 
+#include <optional>
+
 #include "dem_server/engine.hpp"
+#include "dem_server/laboratory/triaxial_test.hpp"
+#include "dem_server/packing/face_offset.hpp"
 #include "dem_server/packing/homogenise.hpp"
 #include "dem_server/packing/packing.hpp"
 #include "protocol/messages.hpp"
@@ -100,7 +104,10 @@ dem::BondNetwork bond_network(const dem::DemEngine& engine) {
   dem::BondNetwork network;
   network.centres = engine.motion.position;
   network.radii = grains.radius;
-  for (std::size_t i = 0; i < grains.size(); ++i) network.density.push_back(grains.material_of(i).density);
+  for (std::size_t i = 0; i < grains.size(); ++i) {
+    network.density.push_back(grains.material_of(i).density);
+    network.locked.push_back(engine.rotates(i) ? 0 : 1);
+  }
   for (const dem::Pair& pair : engine.bonds()) {
     const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
     const Vec branch = network.centres[j] + domain.offset(pair.image) - network.centres[i];
@@ -112,11 +119,15 @@ dem::BondNetwork bond_network(const dem::DemEngine& engine) {
   return network;
 }
 
-protocol::Homogenised homogenise(const dem::DemEngine& engine, const protocol::Homogenise& m) {
+void need_bonds(const dem::DemEngine& engine, const char* request) {
   if (engine.bonds().empty())
-    throw engine::RequestError("HOMOGENISE", "the grains are not bonded", "send BONDS before PREPARE");
+    throw engine::RequestError(request, "the grains are not bonded", "send BONDS before PREPARE");
   if (!engine.clumps().empty())
-    throw engine::RequestError("HOMOGENISE", "grains are joined to clumps", "send GRAINS and BONDS without CLUMPS");
+    throw engine::RequestError(request, "grains are joined to clumps", "send GRAINS and BONDS without CLUMPS");
+}
+
+protocol::Homogenised homogenise(const dem::DemEngine& engine, const protocol::Homogenise& m) {
+  need_bonds(engine, "HOMOGENISE");
   dem::HomogeniseOptions options;
   options.threads = engine.threads;
   const dem::Window window{to_vec(m.box_lo.data), to_vec(m.box_hi.data)};
@@ -129,8 +140,49 @@ protocol::Homogenised homogenise(const dem::DemEngine& engine, const protocol::H
   return reply;
 }
 
+protocol::FaceOffset measure_face(const dem::DemEngine& engine, protocol::MeasureFace&& m) {
+  constexpr std::uint32_t faces = 6;
+  need_bonds(engine, "MEASURE_FACE");
+  if (m.face >= faces)
+    throw engine::RequestError("MEASURE_FACE.face", "there is no face " + std::to_string(m.face), "send 0 to 5");
+  const dem::HeldFace face{.axis = static_cast<int>(m.face / 2), .high = m.face % 2 == 1, .place = m.place,
+                           .grains = std::move(m.entities.data), .components = m.components};
+  const dem::Window window{to_vec(m.box_lo.data), to_vec(m.box_hi.data)};
+  const dem::FaceOffset result = dem::face_offset(bond_network(engine), engine.domain(), face, window, {});
+  protocol::FaceOffset reply;
+  reply.offset = result.offset;
+  reply.residual = result.residual;
+  return reply;
+}
+
+protocol::TriaxialCurve to_message(const std::vector<dem::CurvePoint>& curve, const dem::SampleState& state) {
+  protocol::TriaxialCurve m;
+  for (const dem::CurvePoint& point : curve) {
+    m.axial_strain.data.push_back(point.axial_strain);
+    m.volume_strain.data.push_back(point.volume_strain);
+    m.axial_stress.data.push_back(point.axial_stress);
+    m.lateral_stress.data.insert(m.lateral_stress.data.end(), {point.lateral_stress[0], point.lateral_stress[1]});
+    m.broken.data.push_back(point.broken);
+    m.contacts_per_grain.data.push_back(point.contacts);
+    m.sliding.data.push_back(point.sliding);
+  }
+  const std::uint64_t points = curve.size();
+  for (auto* column : {&m.axial_strain, &m.volume_strain, &m.axial_stress, &m.broken, &m.contacts_per_grain, &m.sliding})
+    column->set_shape(std::array<std::uint64_t, 1>{points});
+  m.lateral_stress.set_shape(std::array<std::uint64_t, 2>{points, 2});
+  m.box = std::vector<double>{state.box[0], state.box[1], state.box[2]};
+  m.step = state.step;
+  m.steps = state.steps;
+  m.unbalanced = state.unbalanced;
+  m.work = state.work;
+  m.energy_error = state.energy_error;
+  m.largest_energy = state.largest_energy;
+  return m;
+}
+
 std::vector<std::string> capabilities() {
-  std::vector<std::string> names{"frozen", "updated", "walls", "block", "sponge", "pack", "homogenise", "clumps"};
+  std::vector<std::string> names{"frozen", "updated", "walls", "block", "sponge", "pack", "homogenise", "measure_face", "clumps",
+                                 "triaxial"};
   for (const std::string& field : dem::DemEngine::field_names()) names.push_back("field:" + field);
   return names;
 }
@@ -187,6 +239,25 @@ void serve(protocol::Server& server) {
   service.on<protocol::Homogenise>([&](const protocol::Homogenise& m) {
     engine.phase = "homogenising";
     return homogenise(engine, m);
+  });
+  service.on<protocol::MeasureFace>([&](protocol::MeasureFace&& m) {
+    engine.phase = "measuring a face";
+    return measure_face(engine, std::move(m));
+  });
+  std::optional<dem::TriaxialTest> test;
+  service.on<protocol::TriaxialConfine>([&](const protocol::TriaxialConfine& m) {
+    engine.phase = "confining a sample";
+    test.emplace(engine, dem::Confinement{m.pressure, static_cast<int>(m.axis), m.damping, m.unbalanced, m.max_steps,
+                                          m.step_fraction});
+    const dem::CurvePoint confined = test->confine();
+    return to_message({confined}, test->state());
+  });
+  service.on<protocol::TriaxialShear>([&](const protocol::TriaxialShear& m) {
+    if (!test || !engine.stretched())
+      throw engine::RequestError("TRIAXIAL_SHEAR", "the sample is not confined", "send TRIAXIAL_CONFINE first");
+    engine.phase = "shearing a sample";
+    const auto curve = test->shear({m.axial_strain, m.record_every, m.inertial_number, m.damping});
+    return to_message(curve, test->state());
   });
   server.run(service);
 }

@@ -228,7 +228,8 @@ void DemEngine::build_contacts() {
     contact_.rolling = contact_.rolling || (contact_.rotating && resists_rolling(m));
     contact_.damped = contact_.damped || m.damping_ratio > 0.0;
   }
-  auto candidates = frozen ? std::vector<Pair>{} : pairs_of(present_positions(), grains_.radius, skin_, built_domain_);
+  auto candidates =
+      frozen ? std::vector<Pair>{} : pairs_of(present_positions(), grains_.radius, skin_, built_domain_);
   if (!clumps_.empty()) clumps_.drop_internal(candidates);
   contact_.table = first_table(source(), bonds_, candidates);
   contact_.threads = threads;
@@ -241,6 +242,7 @@ void DemEngine::build_contacts() {
   else
     contact_.springs_from_displacements(motion.displacement, rotation_.angle);
   displacement_at_build_ = motion.displacement;
+  strain_at_build_ = 0.0;
   built_ = true;
   built_options_ = options;
   built_weights_ = weights;

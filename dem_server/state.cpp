@@ -49,6 +49,9 @@ struct StateHeader {
 }  // namespace
 
 std::vector<std::uint8_t> DemEngine::checkpoint() const {
+  if (contact_.stretched)
+    throw engine::RequestError("CHECKPOINT", "the ground is strained by a laboratory test, whose state is not kept",
+                               "send GRAINS, BONDS and PREPARE anew");
   StateHeader header;
   header.grains = grains_.size();
   header.walls = walls_.walls.size();

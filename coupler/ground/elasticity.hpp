@@ -11,6 +11,8 @@ using Stiffness = std::array<std::array<double, 6>, 6>;
 struct Elasticity {
   Stiffness stiffness{};  ///< Pa
   double density = 0.0;   ///< bulk, kg/m3
+  /// How far inside the faces xmin, xmax ... zmax a continuum would have to be held to be as long as the grains, m.
+  std::array<double, 6> face_offset{};
 };
 
 /// Throws std::invalid_argument unless young > 0 and -1 < poisson < 0.5.

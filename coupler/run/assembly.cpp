@@ -38,7 +38,10 @@ Assembly assemble(const scene::Scene& scene, const Packing& packing, const Elast
                   scene.coupling.weight_floor);
   else
     a.zone = Zone(scene.ground.box, scene.ground.box, 0.0, 0.0);
-  if (a.has_mesh) a.mesh = make_mesh(make_grid(scene, a.zone), a.zone);
+  if (a.has_mesh) {
+    a.mesh = make_mesh(make_grid(scene, a.zone), a.zone);
+    a.layers = face_layers(a.mesh, elasticity.face_offset);
+  }
   if (a.has_grains) {
     a.bond_gap = packing.gap;
     a.origin = select_grains(packing, scene.ground, a.zone,

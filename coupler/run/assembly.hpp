@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coupler/ground/elasticity.hpp"
+#include "coupler/ground/face_layers.hpp"
 #include "coupler/ground/grains.hpp"
 #include "coupler/ground/mesh.hpp"
 #include "coupler/interface/rows.hpp"
@@ -22,6 +23,7 @@ struct Assembly {
   std::vector<std::int32_t> clump;  ///< of each grain, -1 for single ones; empty without clumps; filled in by configure_dem
   HexMesh mesh;
   Elasticity elasticity;
+  FaceLayers layers;  ///< of the mesh
 
   bool coupled() const { return has_grains && has_mesh; }
 };

@@ -11,16 +11,6 @@ namespace {
 
 std::uint8_t bit(int axis) { return static_cast<std::uint8_t>(1 << axis); }
 
-std::uint8_t held_components(int face, const scene::Face& condition, bool grains) {
-  if (condition.kind == "fixed" || (condition.kind == "wall" && !grains)) return 7;
-  if (condition.kind == "roller" || condition.kind == "seat") return bit(face / 2);
-  std::uint8_t bits = 0;
-  if (condition.kind == "velocity")
-    for (int axis = 0; axis < 3; ++axis)
-      if (condition.direction[axis] != 0.0) bits |= bit(axis);
-  return bits;
-}
-
 /// The two directions along a face.
 std::array<int, 2> tangents(int face) { return {(face / 2 + 1) % 3, (face / 2 + 2) % 3}; }
 
@@ -39,6 +29,16 @@ std::vector<Hold> holds_of(int face, const scene::Face& condition, const std::ve
 void put_triple(std::vector<double>& out, double x, double y, double z) { out.insert(out.end(), {x, y, z}); }
 
 }  // namespace
+
+std::uint8_t held_components(int face, const scene::Face& condition, bool grains) {
+  if (condition.kind == "fixed" || (condition.kind == "wall" && !grains)) return 7;
+  if (condition.kind == "roller" || condition.kind == "seat") return bit(face / 2);
+  std::uint8_t bits = 0;
+  if (condition.kind == "velocity")
+    for (int axis = 0; axis < 3; ++axis)
+      if (condition.direction[axis] != 0.0) bits |= bit(axis);
+  return bits;
+}
 
 SeatPoints seat_points(int face, const std::vector<std::int32_t>& held, const std::vector<Point>& position, const scene::Box& ground) {
   const auto [first, second] = tangents(face);

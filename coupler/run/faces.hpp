@@ -30,6 +30,9 @@ struct SeatPoints {
 };
 SeatPoints seat_points(int face, const std::vector<std::int32_t>& held, const std::vector<Point>& position, const scene::Box& ground);
 
+/// Bits x = 1, y = 2, z = 4 that a condition holds on its face, of grains or of nodes.
+std::uint8_t held_components(int face, const scene::Face& condition, bool grains);
+
 /// One engine's share of the faces.
 class FaceSide {
  public:

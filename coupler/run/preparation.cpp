@@ -7,7 +7,6 @@
 #include <optional>
 #include <random>
 #include <stdexcept>
-#include <zlib.h>
 
 #include "coupler/ground/loose_grains.hpp"
 #include "coupler/results/earlier_state.hpp"
@@ -36,47 +35,6 @@ std::vector<double> flatten(const Point& p) { return {p.begin(), p.end()}; }
 void add(engine::Hash& hash, const std::vector<double>& values) {
   hash.add(static_cast<std::uint64_t>(values.size()));
   for (const double v : values) hash.add(v);
-}
-
-template <class Message>
-std::optional<Message> read_cached(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return std::nullopt;
-  std::vector<char> bytes((std::istreambuf_iterator<char>(in)), {});
-  std::uint32_t crc = 0;
-  if (bytes.size() < sizeof crc) return std::nullopt;
-  std::memcpy(&crc, bytes.data(), sizeof crc);
-  const std::span<const std::byte> payload(reinterpret_cast<const std::byte*>(bytes.data()) + sizeof crc, bytes.size() - sizeof crc);
-  if (crc32(0, reinterpret_cast<const Bytef*>(payload.data()), static_cast<uInt>(payload.size())) != crc) return std::nullopt;
-  try {
-    protocol::Reader reader(payload);
-    Message message;
-    message.decode(reader);
-    return message;
-  } catch (const protocol::CodecError&) {
-    return std::nullopt;
-  }
-}
-
-/// Best effort: a cache that cannot be written costs time, not the run.
-template <class Message>
-void write_cached(const std::filesystem::path& path, const Message& message) {
-  std::vector<std::byte> payload;
-  protocol::Writer writer(payload);
-  message.encode(writer);
-  const std::uint32_t crc = static_cast<std::uint32_t>(
-      crc32(0, reinterpret_cast<const Bytef*>(payload.data()), static_cast<uInt>(payload.size())));
-  std::error_code error;
-  std::filesystem::create_directories(path.parent_path(), error);
-  std::filesystem::path unfinished = path;
-  unfinished += "." + std::to_string(std::hash<std::string>{}(path.string()) ^ static_cast<std::size_t>(std::rand()));
-  {
-    std::ofstream out(unfinished, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(&crc), sizeof crc);
-    out.write(reinterpret_cast<const char*>(payload.data()), static_cast<std::streamsize>(payload.size()));
-    if (!out) return;
-  }
-  std::filesystem::rename(unfinished, path, error);
 }
 
 protocol::Options options_of(const scene::Scene& scene) {
@@ -128,24 +86,6 @@ void send_weights(const Assembly& assembly, EngineLink& link) {
 }
 
 }  // namespace
-
-Cache::Cache() {
-  const char* own = std::getenv("GABION_CACHE");
-  const char* xdg = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  if (own && *own)
-    folder_ = own;
-  else if (xdg && *xdg)
-    folder_ = std::filesystem::path(xdg) / "gabion";
-  else
-    folder_ = std::filesystem::path(home && *home ? home : ".") / ".cache" / "gabion";
-}
-
-std::filesystem::path Cache::file(const std::string& kind, std::uint64_t key) const {
-  char name[32];
-  std::snprintf(name, sizeof name, "%016llx", static_cast<unsigned long long>(key));
-  return folder_ / (kind + "-" + name + ".bin");
-}
 
 namespace {
 
@@ -227,6 +167,27 @@ scene::Scene lattice_sample(const scene::Scene& scene, const Packing& lattice) {
 
 }  // namespace
 
+void tell_bonded_packing(const scene::Scene& scene, const Packing& packing, EngineLink& dem) {
+  protocol::Options options = options_of(scene);
+  options.gravity = std::vector<double>{0, 0, 0};
+  dem.tell(options);
+  scene::Material elastic = scene.material(scene.ground.material);  // strengths do not matter at unit strain
+  elastic.friction = elastic.normal_strength = elastic.shear_strength = scene::infinity;
+  dem.tell(grain_materials({elastic}));
+  protocol::ContactOptions contacts = contact_options(scene);
+  contacts.geometry = "frozen";
+  dem.tell(contacts);
+  protocol::Grains grains;
+  grains.position = flatten(packing.position);
+  grains.radius = packing.radius;
+  grains.material = std::vector<std::int32_t>(packing.radius.size(), 0);
+  dem.tell(grains);
+  protocol::Bonds bonds;
+  bonds.gap = packing.gap;
+  dem.ask<protocol::Bonded>(bonds);
+  dem.ask<protocol::Ready>(protocol::Prepare{});
+}
+
 Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_packing, EngineLink* dem, const Cache& cache,
                              const Log& log) {
   const bool lattice = scene::is_lattice(whole.grains);
@@ -244,7 +205,9 @@ Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_pac
   key.add(cache_version);
   add(key, flatten(packing.position));
   add(key, packing.radius);
-  add(key, {packing.gap, soil.normal_stiffness, soil.shear_stiffness, soil.density, scene.grains.rotations ? 1.0 : 0.0});
+  const bool rotating = scene.grains.rotations && soil.rotates;
+  // not 0: under it older programs kept answers in which grains rotated all the same
+  add(key, {packing.gap, soil.normal_stiffness, soil.shear_stiffness, soil.density, rotating ? 1.0 : -1.0});
   add(key, flatten(window.lo));
   add(key, flatten(window.hi));
   add(key, flatten(scene.ground.box.lo));
@@ -257,24 +220,7 @@ Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_pac
   } else {
     if (!dem) throw protocol::AddressError("the stiffness of the packing is not in the cache: a dem_server is needed to measure it (--dem)");
     log("stiffness of the packing: measuring it");
-    protocol::Options options = options_of(scene);
-    options.gravity = std::vector<double>{0, 0, 0};
-    dem->tell(options);
-    scene::Material elastic = soil;  // stiffness only: strengths do not matter at unit strain
-    elastic.friction = elastic.normal_strength = elastic.shear_strength = scene::infinity;
-    dem->tell(grain_materials({elastic}));
-    protocol::ContactOptions contacts = contact_options(scene);
-    contacts.geometry = "frozen";
-    dem->tell(contacts);
-    protocol::Grains grains;
-    grains.position = flatten(packing.position);
-    grains.radius = packing.radius;
-    grains.material = std::vector<std::int32_t>(packing.radius.size(), 0);
-    dem->tell(grains);
-    protocol::Bonds bonds;
-    bonds.gap = packing.gap;
-    dem->ask<protocol::Bonded>(bonds);
-    dem->ask<protocol::Ready>(protocol::Prepare{});
+    tell_bonded_packing(scene, packing, *dem);
     protocol::Homogenise homogenise;
     homogenise.box_lo = flatten(window.lo);
     homogenise.box_hi = flatten(window.hi);
@@ -293,6 +239,7 @@ Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_pac
     const IsotropicFit fit = isotropic_fit(elasticity.stiffness);
     elasticity.stiffness = isotropic_stiffness(fit.young, fit.poisson);
   }
+  if (!lattice) elasticity.face_offset = obtain_face_offsets(scene, packing, dem, cache, log);
   return elasticity;
 }
 
@@ -323,10 +270,12 @@ protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, Eng
 protocol::Ready configure_continuum(const scene::Scene& scene, const Assembly& assembly, EngineLink& continuum) {
   continuum.tell(options_of(scene));
   protocol::SolidMaterials materials;
-  for (const auto& row : assembly.elasticity.stiffness)
-    materials.stiffness.data.insert(materials.stiffness.data.end(), row.begin(), row.end());
-  materials.stiffness.set_shape(std::array<std::uint64_t, 3>{1, 6, 6});
-  materials.density = std::vector<double>{assembly.elasticity.density};
+  const std::vector<double>& factors = assembly.layers.factor;
+  for (const double factor : factors)
+    for (const auto& row : assembly.elasticity.stiffness)
+      for (const double c : row) materials.stiffness.data.push_back(factor * c);
+  materials.stiffness.set_shape(std::array<std::uint64_t, 3>{factors.size(), 6, 6});
+  materials.density = std::vector<double>(factors.size(), assembly.elasticity.density);
   continuum.tell(materials);
   protocol::Mesh mesh;
   mesh.nodes = flatten(assembly.mesh.nodes);
@@ -335,7 +284,7 @@ protocol::Ready configure_continuum(const scene::Scene& scene, const Assembly& a
   for (const auto& wrap : assembly.mesh.wrap) mesh.wrap.data.insert(mesh.wrap.data.end(), wrap.begin(), wrap.end());
   mesh.elements.set_shape(std::array<std::uint64_t, 2>{assembly.mesh.elements.size(), 8});
   mesh.wrap.set_shape(std::array<std::uint64_t, 2>{assembly.mesh.wrap.size(), 8});
-  mesh.material = std::vector<std::int32_t>(assembly.mesh.elements.size(), 0);
+  mesh.material = assembly.layers.material;
   continuum.tell(mesh);
   if (assembly.zone.overlap() > 0.0) send_weights(assembly, continuum);
   return continuum.ask<protocol::Ready>(protocol::Prepare{});

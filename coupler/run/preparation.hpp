@@ -6,23 +6,12 @@
 #include <string>
 
 #include "coupler/run/assembly.hpp"
+#include "coupler/run/cache.hpp"
 #include "coupler/run/engine_link.hpp"
 
 namespace gabion::coupler {
 
 using Log = std::function<void(const std::string&)>;
-
-/// Files that spare a run what an earlier one has computed. Each is one protocol payload with a checksum;
-/// a damaged file is ignored and replaced.
-class Cache {
- public:
-  /// Folder: GABION_CACHE, else XDG_CACHE_HOME/gabion, else ~/.cache/gabion.
-  Cache();
-  std::filesystem::path file(const std::string& kind, std::uint64_t key) const;
-
- private:
-  std::filesystem::path folder_;
-};
 
 /// The ground's packing: a lattice, or a random packing made by dem_server unless cached.
 Packing obtain_packing(const scene::Scene& scene, EngineLink* dem, const Cache& cache, const Log& log);
@@ -30,6 +19,14 @@ Packing obtain_packing(const scene::Scene& scene, EngineLink* dem, const Cache& 
 /// The ground's elastic constants: as the scene gives them, or measured on the packing by dem_server unless cached.
 Elasticity obtain_elasticity(const scene::Scene& scene, const Packing& packing, EngineLink* dem, const Cache& cache,
                              const Log& log);
+
+/// The packing with elastic bonds and no weight, for measurements.
+void tell_bonded_packing(const scene::Scene& scene, const Packing& packing, EngineLink& dem);
+
+/// How far inside each face a continuum would have to be held, m, measured by dem_server unless cached; 0 where nothing
+/// holds the face's normal, where no mesh stands for the grains there, or the scene wants it so.
+std::array<double, 6> obtain_face_offsets(const scene::Scene& scene, const Packing& packing, EngineLink* dem, const Cache& cache,
+                                          const Log& log);
 
 /// Everything but faces and ties; returns masses and stable step. Fills in assembly.grains.plain_mass and assembly.clump.
 protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, EngineLink& dem, const Log& log);

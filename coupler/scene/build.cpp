@@ -96,7 +96,7 @@ Grains grains(const Json& g, const Json& coupling) {
 }
 
 Mesh mesh(const Json& m) {
-  return {.size = m["size"], .grading = m["grading"], .element = m["element"], .stiffness = m["stiffness"]};
+  return {.size = m["size"], .grading = m["grading"], .element = m["element"], .stiffness = m["stiffness"], .held_faces = m["held_faces"]};
 }
 
 /// Radii from the border within which grains are tied. A tied layer is too stiff, for its grains cannot move against one
@@ -267,6 +267,17 @@ Run run(const Json& r) {
           .measure_energy = r["measure_energy"]};
 }
 
+Laboratory laboratory(const Json& l) {
+  return {.confinements = l["confinements"].get<std::vector<double>>(),
+          .axial_strain = l["axial_strain"],
+          .peak_strain = l["peak_strain"],
+          .peak_inertial_number = l["peak_inertial_number"],
+          .inertial_number = l["inertial_number"],
+          .damping = l["damping"],
+          .unbalanced = l["unbalanced"],
+          .max_steps = l["max_steps"]};
+}
+
 }  // namespace
 
 bool InitialMotion::any() const {
@@ -299,6 +310,7 @@ Scene build_scene(Json& v, const std::string& name) {
   for (const Json& probe : v["probes"]) scene.probes.push_back({probe["name"], point(probe["at"])});
   scene.output = output(v["output"]);
   scene.run = run(v["run"]);
+  if (v.contains("laboratory")) scene.laboratory = laboratory(v["laboratory"]);
   return scene;
 }
 

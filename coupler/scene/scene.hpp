@@ -83,6 +83,7 @@ struct Mesh {
   std::string element = "brick";
   /// Continuum constants from: measured (on the packing), material (young, poisson, bulk_density)
   std::string stiffness = "measured";  ///< measured, measured_isotropic, material
+  std::string held_faces = "measured";  ///< measured: as long as the grains held there; plain: on the face
 };
 
 struct Sponge {
@@ -186,6 +187,18 @@ struct Run {
   bool measure_energy = true;
 };
 
+/// Triaxial tests of the ground as a periodic sample.
+struct Laboratory {
+  std::vector<double> confinements;  ///< Pa
+  double axial_strain = 0.1;
+  double peak_strain = 0.002;  ///< slow and finely recorded up to here
+  double peak_inertial_number = 1e-4;
+  double inertial_number = 5e-4;
+  double damping = 0.2;      ///< local, while shearing
+  double unbalanced = 1e-3;  ///< at rest when confined
+  std::uint64_t max_steps = 200'000;
+};
+
 struct Scene {
   std::string title;
   std::string name;  ///< file name without folder and ending
@@ -205,6 +218,7 @@ struct Scene {
   std::vector<Probe> probes;
   Output output;
   Run run;
+  std::optional<Laboratory> laboratory;
 
   /// Throws std::out_of_range; cannot happen for names that ground and fills use.
   const Material& material(const std::string& wanted) const;

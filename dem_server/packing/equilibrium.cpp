@@ -33,8 +33,8 @@ Eigen::Matrix3d cross_matrix(double a, Vec n) {
 
 }  // namespace
 
-Equilibrium::Equilibrium(const BondNetwork& network, std::vector<std::uint8_t> fixed)
-    : network_(network), fixed_(std::move(fixed)), mean_radius_(network.mean_radius()) {
+Equilibrium::Equilibrium(const BondNetwork& network, std::vector<std::uint8_t> fixed, VecField beyond)
+    : network_(network), fixed_(std::move(fixed)), beyond_(std::move(beyond)), mean_radius_(network.mean_radius()) {
   fixed_.resize(network.size(), 0);
   floating_ = std::none_of(fixed_.begin(), fixed_.end(), [](std::uint8_t f) { return f != 0; });
   springs_.reserve(network.bonds.size());
@@ -52,7 +52,7 @@ void Equilibrium::factor_blocks() {
     const Eigen::Matrix3d stiffness = s.k_s * Eigen::Matrix3d::Identity() + (s.k_n - s.k_s) * n * n.transpose();
     const auto add = [&](std::int32_t grain, double side, double a) {
       Eigen::Matrix<double, 3, 6> b;
-      b << side * Eigen::Matrix3d::Identity(), cross_matrix(a, s.normal);
+      b << side * Eigen::Matrix3d::Identity(), cross_matrix(turns(grain) ? a : 0.0, s.normal);
       blocks[grain] += b.transpose() * stiffness * b;
     };
     add(s.i, -1.0, s.a_i);
@@ -61,7 +61,9 @@ void Equilibrium::factor_blocks() {
   constexpr double zero_over_largest = 1e-10;
   inverse_blocks_.assign(36 * network_.size(), 0.0);
   for (std::size_t g = 0; g < network_.size(); ++g) {
-    if (fixed_[g]) continue;
+    if (fixed_[g] == all_fixed) continue;
+    for (int k = 0; k < 6; ++k)
+      if (fixed_[g] & (k < 3 ? 1 << k : rotations_fixed)) blocks[g].row(k).setZero(), blocks[g].col(k).setZero();
     const Eigen::SelfAdjointEigenSolver<Block> modes(blocks[g]);
     const double threshold = zero_over_largest * modes.eigenvalues()[5];
     Block inverse = Block::Zero();
@@ -91,10 +93,17 @@ void Equilibrium::settle(GrainMotion& field) const {
     for (std::size_t g = 0; g < fixed_.size(); ++g) mean += field[2 * g];
     mean /= splat(static_cast<double>(fixed_.size()));
     for (std::size_t g = 0; g < fixed_.size(); ++g) field[2 * g] -= mean;
-    return;
   }
-  for (std::size_t g = 0; g < fixed_.size(); ++g)
-    if (fixed_[g]) field[2 * g] = field[2 * g + 1] = Vec{};
+  for (std::size_t g = 0; g < fixed_.size(); ++g) {
+    field[2 * g] *= free_components(g);
+    if ((fixed_[g] & rotations_fixed) || !turns(g)) field[2 * g + 1] = Vec{};
+  }
+}
+
+/// 1 in the components that move freely.
+Vec Equilibrium::free_components(std::size_t grain) const {
+  const std::uint8_t bits = fixed_[grain];
+  return engine::vec(bits & 1 ? 0.0 : 1.0, bits & 2 ? 0.0 : 1.0, bits & 4 ? 0.0 : 1.0);
 }
 
 void Equilibrium::resist(const GrainMotion& motion, GrainMotion& out) const {
@@ -130,7 +139,15 @@ SolveOutcome Equilibrium::solve(const Eigen::Matrix3d& strain, const SolveLimits
   settle(motion);
   GrainMotion residual(length), direction(length), pulled(length), scaled(length);
   load(strain, residual);
-  const double target = std::sqrt(product(residual, residual));
+  double target = std::sqrt(product(residual, residual));
+  if (!beyond_.empty()) {
+    GrainMotion prescribed(length), asked = residual;
+    for (std::size_t g = 0; g < fixed_.size(); ++g)
+      prescribed[2 * g] = (engine::vec(1, 1, 1) - free_components(g)) * beyond_[g];
+    resist(prescribed, pulled);
+    for (std::size_t k = 0; k < length; ++k) asked[k] -= pulled[k], motion[k] += prescribed[k];
+    target = std::sqrt(product(asked, asked));
+  }
   SolveOutcome outcome;
   if (target == 0.0) {
     std::fill(motion.begin(), motion.end(), Vec{});

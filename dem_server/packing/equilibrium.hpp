@@ -33,11 +33,15 @@ struct SolveOutcome {
   bool converged = true;
 };
 
+/// Bits of what is fixed of a grain; as in the message CONSTRAIN.
+constexpr std::uint8_t rotations_fixed = 8, all_fixed = 15;
+
 class Equilibrium {
  public:
-  /// Grains with fixed != 0 keep the affine displacement and do not rotate. Where none is fixed
-  /// (periodic in all directions) the mean displacement is kept at zero.
-  Equilibrium(const BondNetwork& network, std::vector<std::uint8_t> fixed);
+  /// fixed: bits x = 1, y = 2, z = 4 of the displacements that are prescribed, 8 for no rotation. They keep the affine
+  /// displacement, plus `beyond` [m] where it is given, one entry a grain. Where none is fixed (periodic in all
+  /// directions) the mean displacement is kept at zero.
+  Equilibrium(const BondNetwork& network, std::vector<std::uint8_t> fixed, VecField beyond = {});
 
   /// Solves for the macroscopic strain; motion is the start and becomes the answer (resized if need be).
   SolveOutcome solve(const Eigen::Matrix3d& strain, const SolveLimits& limits, GrainMotion& motion) const;
@@ -52,7 +56,9 @@ class Equilibrium {
   void resist(const GrainMotion& motion, GrainMotion& out) const;
   void load(const Eigen::Matrix3d& strain, GrainMotion& out) const;
   void precondition(const GrainMotion& residual, GrainMotion& out) const;
+  /// Zero where fixed.
   void settle(GrainMotion& field) const;
+  Vec free_components(std::size_t grain) const;
   void factor_blocks();
 
   /// A bond with lengths over the mean radius.
@@ -66,6 +72,9 @@ class Equilibrium {
 
   const BondNetwork& network_;
   std::vector<std::uint8_t> fixed_;
+  bool turns(std::size_t grain) const { return network_.locked.empty() || !network_.locked[grain]; }
+
+  VecField beyond_;
   bool floating_ = true;
   double mean_radius_ = 0.0;
   std::vector<Spring> springs_;

@@ -132,7 +132,7 @@ std::vector<std::uint8_t> held_grains(const BondNetwork& network, const Domain& 
       hi = std::max(hi, network.centres[g][a] + network.radii[g]);
     }
     for (std::size_t g = 0; g < network.size(); ++g)
-      if (network.centres[g][a] < lo + layer || network.centres[g][a] > hi - layer) held[g] = 1;
+      if (network.centres[g][a] < lo + layer || network.centres[g][a] > hi - layer) held[g] = all_fixed;
   }
   return held;
 }

@@ -47,7 +47,7 @@ struct LoadCases {
 /// Unit strain of a load case, as a tensor.
 Eigen::Matrix3d unit_strain(int load_case);
 
-/// 1 for grains near the flat faces of the packing (its own extent, where the domain is not periodic).
+/// all_fixed for grains near the flat faces of the packing (its own extent, where the domain is not periodic).
 std::vector<std::uint8_t> held_grains(const BondNetwork& network, const Domain& domain, double held_layer);
 
 /// cases holds the starts (may be empty) and receives the answers.

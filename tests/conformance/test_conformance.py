@@ -7,7 +7,7 @@ import math
 import unittest
 
 import models
-from engine_process import EngineTest
+from engine_process import TOKEN, EngineTest
 from run_cases import RunCases
 from session_cases import SessionCases
 
@@ -63,6 +63,43 @@ class DemServer(SessionCases, RunCases, EngineTest):
         client.ask("CLUMPS", clump_size=[2], gap=1e-6, single=[0, 1])
         client.ask("PREPARE")
         self.assertEqual(list(client.ask("FETCH", field="clump")["values"].values), [-1, -1, 0, 0])
+
+    def test_the_face_that_a_chain_is_held_at(self):
+        """Grains held half a metre inside the face: a rod would have to be held there."""
+        count, inside = 14, 0.5
+        client = self.greeted()
+        models.set_up_chain(client, count)
+        client.ask("OPTIONS", **{**models.options(), "periodic": [0, 1, 1]})
+        client.ask("PREPARE")
+        window = {"box_lo": [2.5, -10, -10], "box_hi": [count - 2.5, 10, 10]}
+        for face, place, grain in ((0, -inside, 0), (1, count - 1 + inside, count - 1)):
+            measured = client.ask("MEASURE_FACE", face=face, place=place, entities=[grain], components=1, **window)
+            self.assertAlmostEqual(measured["offset"], inside, 8)
+        self.assertIn("normal", str(self.refusal(client.ask, "MEASURE_FACE", face=0, place=0.0, entities=[0],
+                                                 components=6, **window)))
+        self.assertIn("face 6", str(self.refusal(client.ask, "MEASURE_FACE", face=6, entities=[0], components=1,
+                                                 **window)))
+
+    def test_a_triaxial_test_of_a_lattice(self):
+        self.launch()
+        client = self.connect()
+        if "triaxial" not in client.hello(TOKEN)["capabilities"]:
+            self.skipTest("the engine does no triaxial tests")
+        models.set_up_lattice(client)
+        self.refusal(client.ask, "TRIAXIAL_SHEAR", axial_strain=0.1, record_every=0.1, inertial_number=1e-3, damping=0.2)
+        pressure = 1e-6 * models.STIFFNESS
+        confined = client.ask("TRIAXIAL_CONFINE", pressure=pressure, axis=2, damping=0.7, unbalanced=1e-3,
+                              max_steps=100000, step_fraction=0.7)
+        # a simple cubic lattice: C11 = k_n/(2 R), C12 = 0, k_n of two equal grains in series
+        modulus = models.BOND_STIFFNESS / (2 * models.RADIUS)
+        for side in confined["box"].values:
+            self.assertAlmostEqual((1.0 - side / models.LATTICE_SIDE) * modulus / pressure, 1.0, 2)
+        curve = client.ask("TRIAXIAL_SHEAR", axial_strain=2e-6, record_every=1e-6, inertial_number=1e-3, damping=0.2)
+        strain, stress = (list(curve[name].values) for name in ("axial_strain", "axial_stress"))
+        self.assertEqual(len(strain), 2)
+        self.assertAlmostEqual((stress[1] - stress[0]) / (strain[1] - strain[0]) / modulus, 1.0, 2)
+        self.assertEqual(self.refusal(client.ask, "CHECKPOINT").code, "value")
+
 
 class ContinuumServer(SessionCases, RunCases, EngineTest):
     engine_name, role = "continuum_server", "continuum"

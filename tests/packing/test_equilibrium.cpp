@@ -62,7 +62,7 @@ TEST_CASE("a held chain shares the stretch as springs in series do") {
   BondNetwork network = make_bond_network(centres, radii, {}, 1e-6, {{1.0}, {0.4}});
   network.bonds[0].k_n = 3.0;
   network.bonds[1].k_n = 1.0;
-  const Equilibrium equilibrium(network, {1, 0, 1});
+  const Equilibrium equilibrium(network, {all_fixed, 0, all_fixed});
   GrainMotion motion;
   CHECK(equilibrium.solve(unit_strain(0), {}, motion).converged);
   // force 4 k1 k2/(k1 + k2) over the unit strain; middle grain at 4 k2/(k1 + k2) = 1, affine place is 2

@@ -138,7 +138,15 @@ TEST_CASE("values out of range") {
       {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"friction\": -0.5}}"}, "materials.seed_soil.friction", "expected at least 0; 0: frictionless"},
       {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"normal_strength\": \"-1 Pa\"}}"}, "materials.seed_soil.normal_strength", "0: no bonds"},
       {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"poisson\": 0.5}}"}, "materials.seed_soil.poisson", "0.4999 is accepted"},
+      {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"restitution\": 0}}"}, "materials.seed_soil.restitution", "expected above 0 and at most 1; 1: no contact damping"},
+      {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"restitution\": 1.5}}"}, "materials.seed_soil.restitution", "1.5, expected above 0 and at most 1"},
+      {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"rolling_stiffness\": -1}}"}, "materials.seed_soil.rolling_stiffness", "expected at least 0"},
+      {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"rolling_friction\": \"-0.1\"}}"}, "materials.seed_soil.rolling_friction", "rolling resistance needs rolling_stiffness too"},
+      {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"rotation\": \"lockd\"}}"}, "materials.seed_soil.rotation", "did you mean 'locked'"},
       {{"run.threads=0"}, "run.threads", "at least 1"},
+      {{"laboratory={}"}, "laboratory.confinements", "confinements"},
+      {{"laboratory={\"confinements\": [\"0 kPa\"]}"}, "laboratory.confinements[0]", "above 0 Pa"},
+      {{"laboratory={\"confinements\": [], \"damping\": 1}"}, "laboratory.damping", "0.2 to 0.7"},
   });
   check_mistakes("impact.json", {
       {{"block.mass=0 t"}, "block.mass", "'0 t', expected above 0 kg"},

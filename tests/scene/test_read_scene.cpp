@@ -116,6 +116,17 @@ TEST_CASE("materials come from the scene, a file beside it, or the program") {
   CHECK(read.scene.material("seed_soil").normal_strength == infinity);
   CHECK(read.scene.material("seed_soil").density == 2650);
   CHECK_FALSE(read.scene.material("seed_soil").young);
+  CHECK(read.scene.material("seed_soil").rolling_stiffness == 0.0);
+  CHECK(read.scene.material("seed_soil").rolling_friction == 0.0);
+  CHECK(read.scene.material("seed_soil").restitution == 1.0);
+  CHECK(read.scene.material("seed_soil").rotates);
+  const Material lossy = tiny({R"(materials={"seed_soil": {"normal_stiffness": "1 GPa", "shear_stiffness": "0.2 GPa",
+      "rolling_stiffness": 0.5, "rolling_friction": "infinite", "restitution": 0.3, "rotation": "locked"}})"})
+                             .scene.material("seed_soil");
+  CHECK(lossy.rolling_stiffness == 0.5);
+  CHECK(lossy.rolling_friction == infinity);
+  CHECK(lossy.restitution == 0.3);
+  CHECK_FALSE(lossy.rotates);
   CHECK_THROWS_AS(read.scene.material("clay"), std::out_of_range);
 
   const auto folder = std::filesystem::path(GABION_BINARY_DIR) / "scene_materials";
@@ -279,6 +290,16 @@ TEST_CASE("the rest of the keys arrive") {
   CHECK(wave.wave->wavelength == 2.4);
   CHECK(wave.ground.periodic == std::array<bool, 3>{true, true, false});
   CHECK(wave.coupling.sponge.strength == 25.6);
+}
+
+TEST_CASE("laboratory tests arrive, and a scene without them has none") {
+  CHECK_FALSE(tiny().scene.laboratory);
+  const Scene scene = tiny({"laboratory={\"confinements\": [\"20 kPa\", \"1 bar\"], \"damping\": 0.5}"}).scene;
+  REQUIRE(scene.laboratory);
+  CHECK(scene.laboratory->confinements == std::vector<double>{20e3, 100e3});
+  CHECK(scene.laboratory->damping == 0.5);
+  CHECK(scene.laboratory->axial_strain == 0.1);
+  CHECK(scene.laboratory->max_steps == 200000);
 }
 
 TEST_CASE("a file that cannot be read is named") {

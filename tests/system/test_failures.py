@@ -94,7 +94,8 @@ class Failures(SystemTest):
         """While grains are packed the other engine waits: as long as the coupler shows that it works, no longer."""
         deadline = 2.0
         addresses = self.engines("--io-timeout", str(deadline))
-        process = self.coupler("column.json", *addresses, "--set", "ground.box.lo[2]=-24 m")
+        deep = 'ground.box=[["0 m", "0 m", "-24 m"], ["0.9 m", "0.9 m", "0 m"]]'  # 27 000 grains, which take a while
+        process = self.coupler("column.json", *addresses, "--set", deep)
         time.sleep(deadline + 1.5)
         for alive in (process, self.dem, self.continuum):
             self.assertIsNone(alive.poll(), "ended while the grains were packed")
