@@ -9,6 +9,7 @@
 #include <memory>
 #include <xmmintrin.h>
 
+#include "coupler/laboratory/laboratory.hpp"
 #include "coupler/results/errors.hpp"
 #include "coupler/run/checkpoint.hpp"
 #include "coupler/run/simulation.hpp"
@@ -28,7 +29,7 @@ void interrupt(int) { interrupted = 1; }
 struct Arguments {
   std::string scene, out, dem, continuum, token_file, resume;
   std::vector<std::string> overrides;
-  bool check = false, overwrite = false, json = false;
+  bool check = false, overwrite = false, json = false, laboratory = false;
 };
 
 std::string read_token(const std::string& token_file) {
@@ -45,6 +46,7 @@ std::string read_token(const std::string& token_file) {
 int run(const Arguments& arguments) {
   const scene::ReadResult read = scene::read_scene(arguments.scene, arguments.overrides);
   for (const scene::SceneProblem& warning : read.warnings) std::cerr << "warning: " << warning.text() << "\n";
+  if (arguments.laboratory) coupler::check_laboratory(read.scene);
   const bool grains = coupler::uses_grains(read.scene.model), mesh = coupler::uses_mesh(read.scene.model);
   if (arguments.check) {
     if (arguments.json)
@@ -75,6 +77,11 @@ int run(const Arguments& arguments) {
   using Existing = coupler::RunFolder::Existing;
   coupler::RunFolder folder(arguments.out, arguments.overwrite ? Existing::replace : Existing::refuse);
   folder.write_text("scene.effective.json", read.effective);
+  if (arguments.laboratory) {
+    coupler::run_laboratory(read.scene, folder, *dem, &interrupted);
+    dem->say_goodbye();
+    return finished;
+  }
   auto simulation = std::make_unique<coupler::Simulation>(read.scene, read.hash_text, folder, dem.get(), continuum.get(), activity);
   if (!checkpoint.is_null()) simulation->resume_from(std::move(checkpoint));
   simulation->stop_when(&interrupted);
@@ -113,6 +120,7 @@ int main(int argc, char** argv) {
   app.add_option("--resume", arguments.resume, "run folder, or checkpoint in it, to go on from; results go to --out");
   app.add_flag("--check", arguments.check, "only check the scene");
   app.add_flag("--json", arguments.json, "with --check: print what the scene needs as JSON");
+  app.add_flag("--laboratory", arguments.laboratory, "do the scene's laboratory tests in place of its stages");
   app.add_flag("--overwrite", arguments.overwrite, "replace an earlier run in the run folder");
   try {
     app.parse(argc, argv);

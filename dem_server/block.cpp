@@ -79,8 +79,9 @@ void Block::set(const BlockSetup& setup) {
   now.spin = old_spin_ = spin_at(now.attitude);
   old_velocity_ = now.velocity;
   contacts.clear();
-  friction_work = 0.0;
+  losses = {};
   damping_work = {};
+  kicks_ = 0;
 }
 
 Vec Block::spin_at(const Quaternion& q) const {
@@ -109,7 +110,7 @@ void Block::find(const ContactSource& source, const VecField& displacement, doub
     }
     SurfaceContact contact;
     contact.grain = grain;
-    contact.stiffness = surface_spring(source.grains, i, friction_, source.weights.at(source.rest[i]));
+    set_parameters(contact, source.grains, i, friction_, mass_, source.weights.at(source.rest[i]));
     contact.normal = -to_space(axes, near.outward);
     contact.elongation = near.distance - radius;
     found.push_back(contact);
@@ -142,23 +143,25 @@ void Block::add_forces(const Grains& grains, const Domain& domain, double past_s
     const Vec lever = splat(contact_arm(radius, e)) * n;
     const Vec block_lever = from + lever;
     Vec slip = now.velocity + cross(now.spin, block_lever) - motion.velocity[c.grain];
-    Vec mean = now.spin;
+    Vec mean = now.spin, spin = now.spin;
     if (rotating) {
       slip -= cross(rotation.spin[c.grain], lever);
       mean += rotation.spin[c.grain];
+      spin -= rotation.spin[c.grain];
     }
-    friction_work += follow_surface(c, {e, n, slip, 0.5 * dot(mean, n)}, past_step);
+    losses += follow_surface(c, {e, n, slip, 0.5 * dot(mean, n), spin}, past_step);
     if (!(c.state & touching)) continue;
     motion.force[c.grain] += c.force;
-    if (rotating) rotation.torque[c.grain] += cross(lever, c.force);
+    if (rotating) rotation.torque[c.grain] += cross(lever, c.force) + c.couple();
     force_ -= c.force;
-    torque_ -= cross(block_lever, c.force);
+    torque_ -= cross(block_lever, c.force) + c.couple();
   }
 }
 
 void Block::kick(const engine::StepContext& context, Vec gravity) {
   const Vec dt = splat(context.dt);
   const Vec force = force_ + splat(mass_) * gravity;
+  recent_[kicks_++ % remembered_forces] = force_;
   old_velocity_ = now.velocity;
   old_spin_ = now.spin;
   damping_force_ = damping_torque_ = Vec{};
@@ -206,18 +209,21 @@ double Block::elastic_energy() const {
   return total;
 }
 
-double Block::add_springs(const Grains& grains, double near, std::vector<SurfaceSpring>& springs) const {
-  if (!present()) return 0.0;
-  double stiffness = 0.0;
+Spectra Block::add_springs(const Grains& grains, double near, std::vector<SurfaceSpring>& springs) const {
+  if (!present()) return {};
+  double stiffness = 0.0, bending = 0.0, viscosity = 0.0;
   for (const SurfaceContact& c : contacts) {
     if (c.elongation > near) continue;
-    const double arm = contact_arm(grains.radius[c.grain], std::min(c.elongation, 0.0));
-    springs.push_back({c.grain, c.normal, arm, (1.0 + split) * c.stiffness.normal, (1.0 + split) * c.stiffness.shear});
+    const double arm = contact_arm(grains.radius[c.grain], std::min(c.elongation, 0.0)), more = 1.0 + split;
+    springs.push_back({c.grain, c.normal, arm, more * c.stiffness.normal, more * c.stiffness.shear,
+                       more * c.rolling.stiffness, {more * c.damper.normal, more * c.damper.shear}});
     stiffness += std::max(c.stiffness.normal, c.stiffness.shear);
+    bending += c.rolling.stiffness;
+    viscosity += std::max(c.damper.normal, c.damper.shear);
   }
   const double least = std::min({inertia_[0], inertia_[1], inertia_[2]});
-  const double mobility = 1.0 / mass_ + (rotates_ ? radius_ * radius_ / least : 0.0);
-  return (1.0 + 1.0 / split) * stiffness * mobility;
+  const double mobility = 1.0 / mass_ + (rotates_ ? radius_ * radius_ / least : 0.0), share = 1.0 + 1.0 / split;
+  return {share * (stiffness * mobility + (rotates_ ? bending / least : 0.0)), share * viscosity * mobility};
 }
 
 std::vector<double> Block::state() const {
@@ -234,6 +240,13 @@ std::vector<double> Block::state() const {
   const auto axes = axes_of(now.attitude);
   for (const Vec v : body_.vertices) append(position() + to_space(axes, v));
   return all;
+}
+
+VecField Block::recent_forces() const {
+  VecField forces;
+  const std::size_t count = std::min(kicks_, remembered_forces);
+  for (std::size_t k = kicks_ - count; k < kicks_; ++k) forces.push_back(recent_[k % remembered_forces]);
+  return forces;
 }
 
 }  // namespace gabion::dem

@@ -58,14 +58,17 @@ class Block {
   std::vector<double> momentum() const;
   double gravity_energy(Vec gravity) const;  ///< -M g.(x - x0), J
 
-  /// Springs for the stable step of the grains, and the highest frequency squared of the block itself:
+  /// Springs for the stable step of the grains, and what the block itself has, see Spectra:
   /// |g - b|^2 <= (1 + split)|g|^2 + (1 + 1/split)|b|^2 decouples the two on the safe side.
-  double add_springs(const Grains& grains, double near, std::vector<SurfaceSpring>& springs) const;
+  Spectra add_springs(const Grains& grains, double near, std::vector<SurfaceSpring>& springs) const;
 
   /// position 3, velocity 3, quaternion 4, spin 3, force 3, torque 3, then the corners 3 each.
   std::vector<double> state() const;
+  /// Contact force of each of the last steps, oldest first, at most remembered_forces of them, N.
+  VecField recent_forces() const;
+  static constexpr std::size_t remembered_forces = 64;
   std::vector<SurfaceContact> contacts;  ///< sorted by grain
-  double friction_work = 0.0;            ///< J
+  ContactLosses losses;
   engine::Work damping_work;             ///< J
 
   /// Numbers that a checkpoint has to keep, apart from contacts and sums.
@@ -92,6 +95,8 @@ class Block {
   Vec force_{}, torque_{};  ///< of the contacts, N, N m
   Vec old_velocity_{}, old_spin_{};
   Vec damping_force_{}, damping_torque_{};
+  std::array<Vec, remembered_forces> recent_{};  ///< a ring, for histories finer than what is asked for
+  std::size_t kicks_ = 0;                        ///< since the block was set
 };
 
 }  // namespace gabion::dem

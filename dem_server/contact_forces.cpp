@@ -12,22 +12,46 @@ constexpr std::size_t block = 512;
 
 using Loop = void (*)(const LoopArrays&, std::size_t, std::size_t, ContactSums&);
 
-template <class Law>
-Loop loop_of(bool rotating, bool scattering) {
-  if (scattering) return rotating ? scatter_contacts<Law, true> : scatter_contacts<Law, false>;
-  return rotating ? keep_contacts<Law, true> : keep_contacts<Law, false>;
+template <class Law, class Parts>
+Loop loop_with(bool scattering) {
+  return scattering ? scatter_contacts<Law, Parts> : keep_contacts<Law, Parts>;
 }
 
-Loop choose(LawKind law, bool rotating, bool scattering) {
-  switch (law) {
+template <class Law>
+Loop loop_of(const ContactForces& f, bool scattering) {
+  if (!f.rotating)
+    return f.damped ? loop_with<Law, LoopParts<false, false, true>>(scattering)
+                    : loop_with<Law, LoopParts<false, false, false>>(scattering);
+  if (f.rolling)
+    return f.damped ? loop_with<Law, LoopParts<true, true, true>>(scattering)
+                    : loop_with<Law, LoopParts<true, true, false>>(scattering);
+  return f.damped ? loop_with<Law, LoopParts<true, false, true>>(scattering)
+                  : loop_with<Law, LoopParts<true, false, false>>(scattering);
+}
+
+/// Loops of a ground that is strained between steps.
+Loop choose_stretched(const ContactForces& f, bool scattering) {
+  switch (f.law) {
     case LawKind::elastic_bond:
-      return loop_of<ElasticBond>(rotating, scattering);
+      return loop_of<Stretched<ElasticBond>>(f, scattering);
     case LawKind::breakable_bond:
-      return loop_of<BreakableBond>(rotating, scattering);
+      return loop_of<Stretched<BreakableBond>>(f, scattering);
     case LawKind::friction:
       break;
   }
-  return loop_of<Friction>(rotating, scattering);
+  return loop_of<Stretched<Friction>>(f, scattering);
+}
+
+Loop choose(const ContactForces& f, bool scattering) {
+  switch (f.law) {
+    case LawKind::elastic_bond:
+      return loop_of<ElasticBond>(f, scattering);
+    case LawKind::breakable_bond:
+      return loop_of<BreakableBond>(f, scattering);
+    case LawKind::friction:
+      break;
+  }
+  return loop_of<Friction>(f, scattering);
 }
 
 }  // namespace
@@ -35,28 +59,31 @@ Loop choose(LawKind law, bool rotating, bool scattering) {
 void ContactForces::table_changed(std::size_t grains) {
   broken_of.resize(grains, 0);
   broken_as_first.resize(grains, 0);
-  if (threads > 1) buffer_.connect(table.start, table.second);
+  if (threads > 1) buffer_.connect(table.start, table.second, rolling);
 }
 
 void ContactForces::add(std::size_t first, std::size_t last, double past_step, const Grains& grains,
                         engine::Motion& motion, Rotation& rotation) {
   if (first >= last) return;
   const bool scattering = threads <= 1;
-  const Loop loop = choose(law, rotating, scattering);
+  const Loop loop = (stretched ? choose_stretched : choose)(*this, scattering);
   const LoopArrays arrays{
       table.start.data(),     table.second.data(),   table.branch.data(),  table.spring.data(),
       table.stiffness.data(), table.strength.data(), table.state.data(),   motion.displacement.data(),
       motion.velocity.data(), rotation.spin.data(),  motion.force.data(),  rotation.torque.data(),
-      buffer_.force.data(),   buffer_.moment.data(), grains.radius.data(), past_step};
+      buffer_.force.data(),   buffer_.moment.data(), grains.radius.data(), past_step,
+      table.bending.data(),   buffer_.couple.data(), table.rolling.data(), table.drag.data(),
+      table.damper.data(),    strain_rate};
   const std::size_t blocks = (last - first + block - 1) / block;
   sums_.assign(blocks, ContactSums{});
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
   for (std::size_t b = 0; b < blocks; ++b)
     loop(arrays, first + b * block, std::min(last, first + (b + 1) * block), sums_[b]);
   if (!scattering) buffer_.gather(first, last, rotating, motion.force, rotation.torque, threads);
+  if (first == 0) virial = Vec{};
   for (std::size_t b = 0; b < blocks; ++b) {
-    losses.friction += sums_[b].losses.friction;
-    losses.broken += sums_[b].losses.broken;
+    virial += sums_[b].virial;
+    losses += sums_[b].losses;
     if (sums_[b].breaks > 0) book_breaks(first + b * block, std::min(last, first + (b + 1) * block));
   }
 }
@@ -100,6 +127,7 @@ double ContactForces::energy(const VecField& displacement) const {
     const double e = reach_of(table, c, displacement[table.second[c]] - displacement[i]).elongation;
     const ContactSpring& k = table.stiffness[c];
     twice += k.normal * e * e + k.shear * dot(table.spring[c], table.spring[c]);
+    if (rolling) twice += table.rolling[c].stiffness * dot(table.bending[c], table.bending[c]);
   });
   return 0.5 * twice;
 }
@@ -108,7 +136,13 @@ Vec ContactForces::force(std::size_t i, std::size_t c, const VecField& displacem
   const Reach reach = reach_of(table, c, displacement[table.second[c]] - displacement[i]);
   if (!(table.state[c] & bonded) && !(reach.elongation < 0.0)) return Vec{};
   const ContactSpring& k = table.stiffness[c];
-  Vec f = splat(k.normal * reach.elongation / reach.distance) * reach.branch + splat(k.shear) * table.spring[c];
+  double tension = k.normal * reach.elongation;
+  Vec f = splat(k.shear) * table.spring[c];
+  if (damped && !(table.state[c] & bonded)) {
+    tension = std::min(0.0, tension + table.drag[c][3]);
+    f += table.drag[c];
+  }
+  f += splat(tension / reach.distance) * reach.branch;
   f[3] = 0.0;
   return f;
 }

@@ -5,22 +5,18 @@
 #include <vector>
 
 #include "dem_server/contact_table.hpp"
+#include "dem_server/dissipation.hpp"
 #include "dem_server/pair_buffer.hpp"
 #include "dem_server/rotation.hpp"
 #include "protocol/engine/motion.hpp"
 
 namespace gabion::dem {
 
-/// What contacts took out of the system since the start.
-struct ContactLosses {
-  double friction = 0.0;  ///< J
-  double broken = 0.0;    ///< energy of bonds at breakage, J
-};
-
 /// The same for a block of grains in one step.
 struct ContactSums {
   ContactLosses losses;
   std::int32_t breaks = 0;
+  Vec virial{};  ///< of a stretched ground only, N m
 };
 
 enum class LawKind { elastic_bond, breakable_bond, friction };
@@ -30,11 +26,17 @@ class ContactForces {
   ContactTable table;
   LawKind law = LawKind::friction;
   bool rotating = true;
+  bool rolling = false;  ///< some material resists rolling
+  bool damped = false;   ///< some material has a restitution below 1
   int threads = 1;
   ContactLosses losses;
   std::uint64_t breaks = 0;                   ///< bonds broken since the start
   std::vector<std::int32_t> broken_of;        ///< broken bonds per grain
   std::vector<std::int32_t> broken_as_first;  ///< the same, counted at the pair's first grain only
+
+  bool stretched = false;  ///< the ground may be strained between steps, see DemEngine::stretch
+  Vec strain_rate{};       ///< of the last such strain, over the branches it led to, 1/s
+  Vec virial{};            ///< when stretched: sum of force on i times branch i to j, x y z, at the last call, N m
 
   /// Call when the table was replaced.
   void table_changed(std::size_t grains);
@@ -48,7 +50,7 @@ class ContactForces {
   /// Shear springs of unbroken bonds := what the total displacements and rotations give.
   void springs_from_displacements(const VecField& displacement, const VecField& angle);
 
-  /// 1/2 sum k_n e^2 + k_s s^2 of what is bonded or touching, J.
+  /// 1/2 sum k_n e^2 + k_s s^2 + k_r theta^2 of what is bonded or touching, J.
   double energy(const VecField& displacement) const;
 
   /// Force of pair c on its first grain, N, at these displacements and with the springs of the last step.

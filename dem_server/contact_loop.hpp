@@ -13,9 +13,13 @@
 // shears nothing. Losses are booked so that they close the leapfrog balance, in which a force works by
 // the mean of its values at both ends of a step:
 //   friction   1/2 k_s (s_old + s_new).(s_trial - s_new)
+//   switching  see switching_loss, contacts that open or close in the step
 //   breakage   the same, and 1/2 (f_old + f_new)(e_new - e_old) - change of 1/2 k_n e^2
+// Rolling resistance and contact damping: see dissipation.hpp. Loops without them are their own instances, in which
+// nothing of them is left.
 
 #include "dem_server/contact_forces.hpp"
+#include "dem_server/stretched_law.hpp"
 #include "dem_server/vector_kernels.hpp"
 
 namespace gabion::dem {
@@ -33,12 +37,25 @@ struct LoopArrays {
   Vec *pair_force, *pair_moment;  // keep
   const double* radius;
   double past_step;
+  // only with rolling resistance, and with contact damping
+  Vec *bending, *pair_couple;
+  const RollingResistance* rolling;
+  Vec* drag;
+  const ContactDamper* damper;
+  Vec strain_rate;  // of the ground in the last step; read for a Stretched law only
 };
 
-/// What one contact does to its grains.
+/// What one contact does to its grains. couple: on i, N m.
 struct ContactAction {
   Vec force, moment;
   double arm_i, arm_j;
+  Vec couple;
+};
+
+/// Which mechanisms a loop knows.
+template <bool rotating_, bool rolling_, bool damped_>
+struct LoopParts {
+  static constexpr bool rotating = rotating_, rolling = rotating_ && rolling_, damped = damped_;
 };
 
 /// A broken bond that came fully apart is an ordinary pair again; neither rule gives a force here.
@@ -50,7 +67,12 @@ inline void forget_bond_length(const LoopArrays& a, std::size_t i, std::size_t c
   a.state[c] &= static_cast<std::uint8_t>(~offset);
 }
 
-template <class Law, bool rotating>
+/// A vector that turns by a small angle.
+inline Vec turned_by(Vec angle, Vec v) {
+  return v + cross_of(angle, fma(splat(0.5), cross_of(angle, v), v));
+}
+
+template <class Law, class Parts>
 inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, ContactAction& action,
                            ContactSums& sums) {
   const auto j = static_cast<std::size_t>(a.second[c]);
@@ -71,12 +93,12 @@ inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, Co
   const ContactSpring k = a.stiffness[c];
 
   // kinematics of the last step
-  const Vec dv = a.velocity[j] - a.velocity[i];
+  const Vec dv = relative_velocity<Law>(a.velocity[j] - a.velocity[i], a.strain_rate, D);
   const Vec dt = splat(a.past_step);
   const Vec middle = fnma(splat(0.5 * a.past_step), dv, D);
   Vec slip = dv;
   Vec turn = cross_of(middle, dv) * splat(inverse * inverse);
-  if constexpr (rotating) {
+  if constexpr (Parts::rotating) {
     const Vec mean = splat(0.5) * (a.spin[i] + a.spin[j]);
     slip -= cross_of(fma(splat(k.half_difference * inverse), a.spin[i] - a.spin[j], mean), middle);
     turn = fma(n, dot_all(mean, n), turn);
@@ -88,7 +110,19 @@ inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, Co
 
   const Trial trial{stretch / (d + rest), fnma(n, dot_all(moved, n), moved), (was & bonded) != 0};
   const BondStrength strength = Law::breakable ? a.strength[c] : BondStrength{};
-  const Response r = Law::respond(k, strength, trial);
+  Response r = Law::respond(k, strength, trial);
+  Vec drag{};
+  if constexpr (Parts::damped) {
+    Vec rate = fnma(n, dot_all(slip, n), slip);
+    rate[3] = dot_all(dv, middle)[0] * inverse;
+    if (r.state & touching) drag = damped(k, a.damper[c], trial, rate, r);
+    Vec before = a.drag[c];
+    const double before_normal = before[3];
+    before = turned_by(turn, without_fourth(before));
+    sums.losses.damping += 0.5 * ((before_normal + drag[3]) * rate[3] * a.past_step +
+                                  dot_all(before + without_fourth(drag), trial.spring - turned)[0]);
+    a.drag[c] = drag;
+  }
 
   std::uint8_t now = r.state | (was & (broken | offset | counted));
   if ((was & bonded) && !(r.state & bonded)) [[unlikely]] {
@@ -100,6 +134,11 @@ inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, Co
                           0.5 * k.shear * dot(turned + r.spring, trial.spring - r.spring);
     ++sums.breaks;
     now |= broken | offset;
+  } else if (((was ^ r.state) & touching) && !(was & bonded)) [[unlikely]] {
+    const Vec old_du = du - dt * dv, old_D = rest_branch + old_du;
+    const double e_old = (rest_square + dot(rest_branch + old_D, old_du)) / (norm(old_D) + rest);
+    sums.losses.switching += switching_loss(k.normal, e_old, trial.elongation);
+    sums.losses.friction += 0.5 * k.shear * dot(turned + r.spring, trial.spring - r.spring);
   } else if (r.state != bonded && r.state != touching) {
     sums.losses.friction += 0.5 * k.shear * dot(turned + r.spring, trial.spring - r.spring);
   }
@@ -108,36 +147,57 @@ inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, Co
   store[3] = rest_square;
   a.spring[c] = store;
 
-  action.force = fma(splat(r.tension), n, splat(k.shear) * r.spring);
-  if constexpr (rotating) {
+  Vec shear_force = splat(k.shear) * r.spring;
+  double tension = r.tension;
+  if constexpr (Parts::damped) {
+    shear_force += without_fourth(drag);
+    tension += drag[3];
+  }
+  if constexpr (Parts::rolling) {
+    const RollingResistance resistance = a.rolling[c];
+    const Vec before = turned_by(turn, a.bending[c]);
+    const Vec bent = fma(dt, a.spin[j] - a.spin[i], before), tried = fnma(n, dot_all(bent, n), bent);
+    const Vec now_bent = r.state & touching ? rolled(resistance, tried, -tension) : Vec{};
+    sums.losses.rolling += 0.5 * resistance.stiffness * dot(before + now_bent, tried - now_bent);
+    a.bending[c] = now_bent;
+    action.couple = splat(resistance.stiffness) * now_bent;
+  }
+  action.force = fma(splat(tension), n, shear_force);
+  if constexpr (Parts::rotating) {
     action.moment = splat(k.shear) * cross_of(n, r.spring);
+    if constexpr (Parts::damped) action.moment += cross_of(n, without_fourth(drag));
     action.arm_i = 0.5 * d + k.half_difference;
     action.arm_j = 0.5 * d - k.half_difference;
   }
+  if constexpr (is_stretched<Law>) sums.virial += action.force * D;
   return true;
 }
 
 /// One thread: forces go straight to the grains, in contact order.
-template <class Law, bool rotating>
+template <class Law, class Parts>
 void scatter_contacts(const LoopArrays& arrays, std::size_t first, std::size_t last, ContactSums& total) {
   // copies that nothing else points to: a store to an array need not be feared to change them
   const LoopArrays a = arrays;
+  constexpr bool rotating = Parts::rotating;
   ContactSums sums;
   ContactAction act{};
   for (std::size_t i = first; i < last; ++i) {
     Vec fi = a.force[i], ti = rotating ? a.torque[i] : Vec{};
     for (std::int32_t c = a.start[i]; c < a.start[i + 1]; ++c) {
-      if (!contact_action<Law, rotating>(a, i, c, act, sums)) continue;
+      if (!contact_action<Law, Parts>(a, i, c, act, sums)) continue;
       const auto j = static_cast<std::size_t>(a.second[c]);
       fi += act.force;
       if constexpr (rotating) ti = fma(splat(act.arm_i), act.moment, ti);
+      if constexpr (Parts::rolling) ti += act.couple;
       if (j == i) [[unlikely]] {
         fi -= act.force;
         if constexpr (rotating) ti = fma(splat(act.arm_j), act.moment, ti);
+        if constexpr (Parts::rolling) ti -= act.couple;
         continue;
       }
       a.force[j] -= act.force;
       if constexpr (rotating) a.torque[j] = fma(splat(act.arm_j), act.moment, a.torque[j]);
+      if constexpr (Parts::rolling) a.torque[j] -= act.couple;
     }
     a.force[i] = fi;
     if constexpr (rotating) a.torque[i] = ti;
@@ -146,20 +206,21 @@ void scatter_contacts(const LoopArrays& arrays, std::size_t first, std::size_t l
 }
 
 /// Several threads: forces are kept per contact, see PairBuffer.
-template <class Law, bool rotating>
+template <class Law, class Parts>
 void keep_contacts(const LoopArrays& arrays, std::size_t first, std::size_t last, ContactSums& total) {
   const LoopArrays a = arrays;
   ContactSums sums;
   ContactAction act{};
   for (std::size_t i = first; i < last; ++i)
     for (std::int32_t c = a.start[i]; c < a.start[i + 1]; ++c) {
-      if (!contact_action<Law, rotating>(a, i, c, act, sums)) act = ContactAction{};
+      if (!contact_action<Law, Parts>(a, i, c, act, sums)) act = ContactAction{};
       act.force[3] = act.arm_i;
       a.pair_force[c] = act.force;
-      if constexpr (rotating) {
+      if constexpr (Parts::rotating) {
         act.moment[3] = act.arm_j;
         a.pair_moment[c] = act.moment;
       }
+      if constexpr (Parts::rolling) a.pair_couple[c] = act.couple;
     }
   total = sums;
 }

@@ -15,6 +15,14 @@ void reserve(ContactTable& table, const ContactSource& source, std::size_t pairs
   table.stiffness.reserve(pairs);
   table.state.reserve(pairs);
   if (source.breakable) table.strength.reserve(pairs);
+  if (source.rolling) {
+    table.bending.reserve(pairs);
+    table.rolling.reserve(pairs);
+  }
+  if (source.damped) {
+    table.drag.reserve(pairs);
+    table.damper.reserve(pairs);
+  }
 }
 
 void append_new(ContactTable& table, const ContactSource& source, const Pair& pair, bool bond) {
@@ -34,6 +42,16 @@ void append_new(ContactTable& table, const ContactSource& source, const Pair& pa
   table.stiffness.push_back(contact_spring(source.grains, i, j, weight));
   if (source.breakable) table.strength.push_back(bond_strength(source.grains, i, j, weight));
   table.state.push_back(bond ? bonded : open);
+  const Grains& g = source.grains;
+  if (source.rolling) {
+    table.bending.push_back(Vec{});
+    table.rolling.push_back(rolling_resistance(g.material_of(i), g.material_of(j), g.radius[i], g.radius[j],
+                                               table.stiffness.back().shear));
+  }
+  if (source.damped) {
+    table.drag.push_back(Vec{});
+    table.damper.push_back(pair_damper(g, i, j, weight));
+  }
 }
 
 void append_old(ContactTable& table, const ContactTable& old, std::size_t i, std::size_t c) {
@@ -45,6 +63,14 @@ void append_old(ContactTable& table, const ContactTable& old, std::size_t i, std
   table.stiffness.push_back(old.stiffness[c]);
   if (!old.strength.empty()) table.strength.push_back(old.strength[c]);
   table.state.push_back(old.state[c]);
+  if (!old.bending.empty()) {
+    table.bending.push_back(old.bending[c]);
+    table.rolling.push_back(old.rolling[c]);
+  }
+  if (!old.drag.empty()) {
+    table.drag.push_back(old.drag[c]);
+    table.damper.push_back(old.damper[c]);
+  }
 }
 
 void close(ContactTable& table) {

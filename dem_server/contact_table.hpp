@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dem_server/contact_laws.hpp"
+#include "dem_server/dissipation.hpp"
 #include "dem_server/grains.hpp"
 #include "protocol/engine/engine.hpp"
 
@@ -21,6 +22,12 @@ struct ContactTable {
   std::vector<ContactSpring> stiffness;           ///< weight included
   std::vector<BondStrength> strength;             ///< weight included; empty when no bond can break
   std::vector<std::uint8_t> state;                ///< ContactState bits
+  // empty unless some material resists rolling
+  VecField bending;                        ///< rolling spring, rad
+  std::vector<RollingResistance> rolling;  ///< weight included
+  // empty unless some material has a restitution below 1
+  VecField drag;                      ///< forces of the dashpots in the last step: shear, N; fourth: normal, N
+  std::vector<ContactDamper> damper;  ///< weight included
 
   std::size_t size() const { return second.size(); }
   std::size_t grains() const { return start.size() - 1; }
@@ -46,6 +53,8 @@ struct ContactSource {
   const Domain& domain;
   const engine::WeightField& weights;
   bool breakable;  ///< some bond strength is finite
+  bool rolling;    ///< some material resists rolling
+  bool damped;     ///< some material has a restitution below 1
 };
 
 /// Share of the way from i to j at which grain i touches grain j at rest; outside the pair never.

@@ -29,6 +29,7 @@ bool DemEngine::step(const StepContext& context, engine::Exchange& exchange) {
   motion.trial(interface, all, context);
   boundary.prescribe(motion, context, interface, all);
   if (contact_options_.rotations) rotation_.trial(context);
+  if (!clumps_.empty()) clumps_.kick(context, motion, rotation_);
   if (block_.present()) block_.kick(context, options.gravity);
 
   bool go_on = true;
@@ -51,6 +52,7 @@ std::size_t DemEngine::interface_limit() const {
 void DemEngine::begin_step(const StepContext& context) {
   if (context.dt != step_size_) motion.set_step(step_size_ = context.dt);
   if (rotation_groups() != held_groups_) hold_rotations();  // groups may change between runs
+  if (!clumps_.empty()) refuse_bound_clumps();
   if (contact_options_.geometry == Geometry::updated) {
     refresh_contacts();
     return;
@@ -60,7 +62,7 @@ void DemEngine::begin_step(const StepContext& context) {
 }
 
 void DemEngine::refresh_contacts() {
-  const double limit = 0.25 * skin_ * skin_;  // half the skin, squared
+  const double limit = search_limit();
   bool moved = false;
 #pragma omp parallel for schedule(static) reduction(|| : moved) num_threads(threads) if (threads > 1)
   for (std::size_t i = 0; i < grains_.size(); ++i) {
@@ -77,13 +79,16 @@ void DemEngine::refresh_contacts() {
   contact_.table_changed(grains_.size());
   find_surfaces();
   displacement_at_build_ = motion.displacement;
+  strain_at_build_ = 0.0;
   ++rebuilds_;
   count_lost();
 }
 
 std::vector<Pair> DemEngine::near_pairs() const {
   try {
-    return find_pairs(present_positions(), grains_.radius, skin_, built_domain_);
+    std::vector<Pair> pairs = find_pairs(present_positions(), grains_.radius, skin_, built_domain_);
+    if (!clumps_.empty()) clumps_.drop_internal(pairs);
+    return pairs;
   } catch (const std::invalid_argument& error) {
     throw PhysicsError("contact search", error.what(), "grains left the domain for good, or the step is too large");
   }
@@ -117,9 +122,11 @@ void DemEngine::contact_forces(std::size_t first, std::size_t last) {
 void DemEngine::drift(const StepContext& context) {
   motion.drift(context);
   if (contact_options_.rotations) rotation_.drift(context);
+  if (!clumps_.empty()) clumps_.drift(context, motion);
   if (!walls_.empty()) walls_.drift(context.dt);
   if (block_.present()) block_.drift(context);
   past_step_ = context.dt;
+  contact_.strain_rate = Vec{};
 }
 
 /// Springs follow the last drift at the next force evaluation: brings that forward, before velocities

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "dem_server/block.hpp"
+#include "dem_server/clumps.hpp"
 #include "dem_server/contact_forces.hpp"
 #include "dem_server/linear_network.hpp"
 #include "dem_server/rotation.hpp"
@@ -47,12 +48,28 @@ class DemEngine : public engine::Engine {
   /// Bonds every pair whose gap is at most gap times the sum of the radii, instead of earlier bonds;
   /// stress-free at the rest positions. Needs the grains and the options' box.
   Bonded make_bonds(double gap);
+  /// Joins touching spheres to rigid clumps, instead of earlier ones; members lose the bonds among them. Needs the
+  /// grains and the options' box; bonds made before earlier clumps must be made again.
+  Clumped make_clumps(const ClumpRequest& request);
   void set_walls(std::vector<Wall> walls);
   void set_block(const BlockSetup& setup);
   /// See Sponge::set; call after prepare.
   void set_sponge(std::vector<std::int32_t> grains, std::vector<double> beta, std::size_t hats,
                   const std::vector<std::int32_t>& row_ptr, const std::vector<std::int32_t>& columns,
                   const std::vector<double>& values);
+
+  // A ground that is periodic in every direction may be strained between steps (stretch.cpp).
+
+  /// From here on contacts know the strain and virial() is kept. Call after prepare, which ends it when it builds
+  /// the contacts anew. Throws RequestError where the ground cannot be strained.
+  void allow_stretch();
+  bool stretched() const { return contact_.stretched; }
+  /// Maps the box and the grains, contacts included, by x -> x + strain (x - centre), along x, y, z. At most once
+  /// after each step; velocities and displacements stay those beyond the homogeneous motion.
+  void stretch(Vec strain);
+  /// Sum over contacts of the force on i times the branch from i to j, by components x, y, z, at the forces of the
+  /// last step: the volume times the mean normal stresses, tension positive, N m.
+  Vec virial() const { return contact_.virial; }
 
   // engine::Engine
 
@@ -78,9 +95,14 @@ class DemEngine : public engine::Engine {
   const Grains& grains() const { return grains_; }
   const ContactTable& contacts() const { return contact_.table; }
   const std::vector<Pair>& bonds() const { return bonds_; }
+  /// Whether the grain may rotate, boundary groups apart.
+  bool rotates(std::size_t grain) const {
+    return contact_options_.rotations && grains_.material_of(grain).rotates;
+  }
   Domain domain() const;
   const Rotation& rotation() const { return rotation_; }
   const Block& block() const { return block_; }
+  const Clumps& clumps() const { return clumps_; }
   const Walls& walls() const { return walls_; }
   const engine::Work& sponge_work() const { return sponge_.work; }
   /// Search margin, m.
@@ -99,12 +121,14 @@ class DemEngine : public engine::Engine {
   std::uint64_t rotation_groups() const;
   void find_surfaces();
   void refuse_overlaps() const;
+  void refuse_bound_clumps() const;
   LawKind choose_law() const;
   ContactSource source() const;
 
   // the step (engine.cpp), in call order
   void begin_step(const engine::StepContext& context);
   void refresh_contacts();
+  double search_limit() const;
   std::vector<Pair> near_pairs() const;
   void external_forces(const engine::StepContext& context);
   void surface_forces();
@@ -136,9 +160,11 @@ class DemEngine : public engine::Engine {
   LinearNetwork frozen_;
   Walls walls_;
   Block block_;
+  Clumps clumps_;
   Sponge sponge_;
 
   VecField displacement_at_build_;
+  double strain_at_build_ = 0.0;  ///< sum of the largest strains since the last search
   std::uint64_t held_groups_ = 0;  ///< constraint groups for which rotations were held
   double step_size_ = 0.0;         ///< for which the mobilities were made, s
   double past_step_ = 0.0;         ///< dt of the drift that led to the present state; 0: none

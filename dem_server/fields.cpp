@@ -34,7 +34,8 @@ std::vector<double> table(std::vector<double> values, std::uint64_t width, Shape
 
 std::vector<std::string> DemEngine::field_names() {
   return {"position", "displacement", "velocity", "rotation", "spin",      "force", "radius",    "mass",
-          "weight",   "contact",      "broken",   "lost",     "tie_force", "block", "wall_force"};
+          "weight",   "contact",      "broken",   "lost",     "tie_force", "block", "block_forces", "wall_force",
+          "clump"};
 }
 
 std::optional<std::vector<double>> DemEngine::field(const std::string& name, Shape& shape) const {
@@ -72,6 +73,13 @@ std::optional<std::vector<double>> DemEngine::field(const std::string& name, Sha
          shape = {state.empty() ? 0u : 1u, state.size()};
          return state;
        }},
+      {"block_forces", [&] { return flat(block_.present() ? block_.recent_forces() : VecField{}, shape); }},
+      {"clump",
+       [&] {
+         const std::vector<std::int32_t>& of = clumps_.body_of();
+         return column(
+             of.empty() ? std::vector<double>(grains_.size(), -1.0) : std::vector<double>(of.begin(), of.end()), shape);
+       }},
       {"wall_force", [&] { return flat(walls_.forces(), shape); }},
   };
   const auto found = getters.find(name);
@@ -99,6 +107,15 @@ void DemEngine::set_field(const std::string& name, std::span<const double> value
   finish_last_step();
   VecField& field = *found->second;
   for (std::size_t i = 0; i < grains_.size(); ++i) field[i] = vec(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+  if (&field == &rotation_.spin)
+    for (std::size_t i = 0; i < grains_.size(); ++i)
+      if (!grains_.material_of(i).rotates) field[i] = Vec{};
+  if (!clumps_.empty()) {
+    if (name == "displacement") clumps_.take_displacement(motion);
+    if (name == "velocity") clumps_.take_velocity(motion, rotation_);
+    if (name == "spin") clumps_.take_spin(motion, rotation_);
+    if (name == "rotation") clumps_.take_angle(rotation_);
+  }
   const bool moves = found->second == &motion.displacement || found->second == &rotation_.angle;
   if (moves && contact_options_.geometry == Geometry::updated)
     contact_.springs_from_displacements(motion.displacement, rotation_.angle);

@@ -20,6 +20,12 @@ struct GrainMaterial {
   double friction = 0.0;          ///< Coulomb coefficient, at least 0, may be infinite
   double normal_strength = 0.0;   ///< N/m2, tensile bond strength over min(r)^2, may be infinite
   double shear_strength = 0.0;    ///< N/m2, shear bond strength over min(r)^2, may be infinite
+  // dissipation at frictional contacts, see dissipation.hpp; none by default
+  double rolling_stiffness = 0.0;  ///< beta: k_r = beta k_s r_i r_j, at least 0; 0: none
+  double rolling_friction = 0.0;   ///< eta: |M| <= eta min(r_i, r_j) N, at least 0, may be infinite; 0: none
+  double restitution = 1.0;        ///< of two such grains that collide, above 0 to 1; 1: no dashpots
+  bool rotates = true;             ///< false: the grains keep their attitude
+  double damping_ratio = 0.0;      ///< of restitution; DemEngine::set_materials fills it in
 };
 
 struct Grains {

@@ -87,7 +87,14 @@ void add_surface_forces(const std::vector<SurfaceSpring>& springs, const VecFiel
                   splat((s.normal_stiffness - s.shear_stiffness) * dot(delta, s.normal)) * s.normal;
     force[s.grain] += f;
     if (rotating) torque[s.grain] += splat(s.arm) * cross(s.normal, f);
+    if (rotating && s.rolling_stiffness > 0.0)
+      torque[s.grain] -= splat(s.rolling_stiffness) * (angle[s.grain] - splat(dot(angle[s.grain], s.normal)) * s.normal);
   }
+}
+
+/// Whether rolling resistance or dashpots act here, or will once a bond is broken.
+bool dissipates(const ContactTable& table, std::size_t c, double elongation, double near) {
+  return table.state[c] & bonded ? !table.strength.empty() : elongation <= near;
 }
 
 }  // namespace
@@ -102,14 +109,57 @@ void LinearNetwork::build(const ContactTable& table, const VecField& u, double n
       const std::int32_t j = table.second[c];
       const Reach reach = reach_of(table, c, u[j] - u[i]);
       if (!(table.state[c] & bonded) && reach.elongation > near) continue;
-      const ContactSpring& k = table.stiffness[c];
-      Vec normal = reach.branch / splat(reach.distance);
-      normal[3] = k.shear;
-      contacts_.push_back({normal, 0.5 * reach.distance + k.half_difference, 0.5 * reach.distance - k.half_difference,
-                           k.normal - k.shear});
-      second_.push_back(j);
+      take(table, c, reach, table.stiffness[c].normal, table.stiffness[c].shear);
     }
     start_.push_back(static_cast<std::int32_t>(second_.size()));
+  }
+}
+
+void LinearNetwork::take(const ContactTable& table, std::size_t c, const Reach& reach, double normal, double shear) {
+  Vec direction = reach.branch / splat(reach.distance);
+  direction[3] = shear;
+  const double half_difference = table.stiffness[c].half_difference;
+  contacts_.push_back(
+      {direction, 0.5 * reach.distance + half_difference, 0.5 * reach.distance - half_difference, normal - shear});
+  second_.push_back(table.second[c]);
+}
+
+void LinearNetwork::add_rolling(const ContactTable& table, const VecField& u, double near) {
+  table.each([&](std::size_t i, std::size_t c) {
+    const std::int32_t j = table.second[c];
+    const Reach reach = reach_of(table, c, u[j] - u[i]);
+    if (!dissipates(table, c, reach.elongation, near) || !(table.rolling[c].stiffness > 0.0)) return;
+    rolling_.push_back(
+        {static_cast<std::int32_t>(i), j, reach.branch / splat(reach.distance), table.rolling[c].stiffness});
+  });
+}
+
+void LinearNetwork::build_dashpots(const ContactTable& table, const VecField& u, double near,
+                                   std::vector<SurfaceSpring> surfaces) {
+  *this = LinearNetwork{};
+  for (std::size_t i = 0; i < table.grains(); ++i) {
+    for (std::int32_t c = table.start[i]; c < table.start[i + 1]; ++c) {
+      const Reach reach = reach_of(table, c, u[table.second[c]] - u[i]);
+      if (dissipates(table, c, reach.elongation, near))
+        take(table, c, reach, table.damper[c].normal, table.damper[c].shear);
+    }
+    start_.push_back(static_cast<std::int32_t>(second_.size()));
+  }
+  for (SurfaceSpring& s : surfaces) {
+    s.normal_stiffness = s.damper.normal;
+    s.shear_stiffness = s.damper.shear;
+    s.rolling_stiffness = 0.0;
+  }
+  add_surface(std::move(surfaces));
+}
+
+/// M = k_r P (theta_j - theta_i)
+void LinearNetwork::add_couples(const VecField& angle, VecField& torque) const {
+  for (const RollingSpring& s : rolling_) {
+    const Vec bent = angle[s.j] - angle[s.i];
+    const Vec couple = splat(s.stiffness) * (bent - splat(dot(bent, s.normal)) * s.normal);
+    torque[s.i] += couple;
+    torque[s.j] -= couple;
   }
 }
 
@@ -130,6 +180,7 @@ void LinearNetwork::add_forces(std::size_t first, std::size_t last, const VecFie
   }
   if (!surface_.empty() && last + 1 == start_.size())
     add_surface_forces(surface_, displacement, angle, force, torque, rotating);
+  if (!rolling_.empty() && rotating && last + 1 == start_.size()) add_couples(angle, torque);
 }
 
 Vec LinearNetwork::force(std::size_t i, std::size_t c, const VecField& displacement, const VecField& angle,

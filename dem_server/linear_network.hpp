@@ -24,6 +24,13 @@ struct SurfaceSpring {
   Vec normal;
   double arm;                                ///< m
   double normal_stiffness, shear_stiffness;  ///< N/m
+  double rolling_stiffness = 0.0;            ///< N m
+  ContactDamper damper;
+};
+
+/// Largest eigenvalues of M^-1 K, (rad/s)^2, and of M^-1 C, 1/s, C being the dashpots of contacts.
+struct Spectra {
+  double stiffness = 0.0, viscosity = 0.0;
 };
 
 class LinearNetwork {
@@ -32,6 +39,10 @@ class LinearNetwork {
   /// the normals that displacement u gives.
   void build(const ContactTable& table, const VecField& u, double near);
   void add_surface(std::vector<SurfaceSpring> springs) { surface_ = std::move(springs); }
+  /// The rolling springs of the pairs that build takes, bonds only where they can break.
+  void add_rolling(const ContactTable& table, const VecField& u, double near);
+  /// Dashpots in the place of springs: the same pairs as in add_rolling, and the surfaces'.
+  void build_dashpots(const ContactTable& table, const VecField& u, double near, std::vector<SurfaceSpring> surfaces);
 
   std::size_t size() const { return second_.size(); }
   const std::vector<std::int32_t>& start() const { return start_; }
@@ -52,9 +63,18 @@ class LinearNetwork {
   Vec force(std::size_t i, std::size_t c, const VecField& displacement, const VecField& angle, bool rotating) const;
 
  private:
+  struct RollingSpring {
+    std::int32_t i, j;
+    Vec normal;
+    double stiffness;  ///< N m
+  };
+  void take(const ContactTable& table, std::size_t c, const Reach& reach, double normal, double shear);
+  void add_couples(const VecField& angle, VecField& torque) const;
+
   std::vector<std::int32_t> start_{0}, second_;
   std::vector<LinearContact> contacts_;
   std::vector<SurfaceSpring> surface_;
+  std::vector<RollingSpring> rolling_;
   PairBuffer buffer_;
   bool connected_ = false;
 };

@@ -1,6 +1,9 @@
 // dem_server: the discrete-element engine behind the protocol.
 
+#include <optional>
+
 #include "dem_server/engine.hpp"
+#include "dem_server/laboratory/triaxial_test.hpp"
 #include "dem_server/packing/face_offset.hpp"
 #include "dem_server/packing/homogenise.hpp"
 #include "dem_server/packing/packing.hpp"
@@ -34,7 +37,8 @@ std::vector<dem::GrainMaterial> to_materials(const protocol::GrainMaterials& m) 
   std::vector<dem::GrainMaterial> materials;
   for (std::size_t k = 0; k < m.density.size(); ++k)
     materials.push_back({m.normal_stiffness[k], m.shear_stiffness[k], m.density[k], m.friction[k], m.normal_strength[k],
-                         m.shear_strength[k]});
+                         m.shear_strength[k], m.rolling_stiffness[k], m.rolling_friction[k], m.restitution[k],
+                         m.rotation[k] != 0});
   return materials;
 }
 
@@ -100,7 +104,10 @@ dem::BondNetwork bond_network(const dem::DemEngine& engine) {
   dem::BondNetwork network;
   network.centres = engine.motion.position;
   network.radii = grains.radius;
-  for (std::size_t i = 0; i < grains.size(); ++i) network.density.push_back(grains.material_of(i).density);
+  for (std::size_t i = 0; i < grains.size(); ++i) {
+    network.density.push_back(grains.material_of(i).density);
+    network.locked.push_back(engine.rotates(i) ? 0 : 1);
+  }
   for (const dem::Pair& pair : engine.bonds()) {
     const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
     const Vec branch = network.centres[j] + domain.offset(pair.image) - network.centres[i];
@@ -115,6 +122,8 @@ dem::BondNetwork bond_network(const dem::DemEngine& engine) {
 void need_bonds(const dem::DemEngine& engine, const char* request) {
   if (engine.bonds().empty())
     throw engine::RequestError(request, "the grains are not bonded", "send BONDS before PREPARE");
+  if (!engine.clumps().empty())
+    throw engine::RequestError(request, "grains are joined to clumps", "send GRAINS and BONDS without CLUMPS");
 }
 
 protocol::Homogenised homogenise(const dem::DemEngine& engine, const protocol::Homogenise& m) {
@@ -146,8 +155,34 @@ protocol::FaceOffset measure_face(const dem::DemEngine& engine, protocol::Measur
   return reply;
 }
 
+protocol::TriaxialCurve to_message(const std::vector<dem::CurvePoint>& curve, const dem::SampleState& state) {
+  protocol::TriaxialCurve m;
+  for (const dem::CurvePoint& point : curve) {
+    m.axial_strain.data.push_back(point.axial_strain);
+    m.volume_strain.data.push_back(point.volume_strain);
+    m.axial_stress.data.push_back(point.axial_stress);
+    m.lateral_stress.data.insert(m.lateral_stress.data.end(), {point.lateral_stress[0], point.lateral_stress[1]});
+    m.broken.data.push_back(point.broken);
+    m.contacts_per_grain.data.push_back(point.contacts);
+    m.sliding.data.push_back(point.sliding);
+  }
+  const std::uint64_t points = curve.size();
+  for (auto* column : {&m.axial_strain, &m.volume_strain, &m.axial_stress, &m.broken, &m.contacts_per_grain, &m.sliding})
+    column->set_shape(std::array<std::uint64_t, 1>{points});
+  m.lateral_stress.set_shape(std::array<std::uint64_t, 2>{points, 2});
+  m.box = std::vector<double>{state.box[0], state.box[1], state.box[2]};
+  m.step = state.step;
+  m.steps = state.steps;
+  m.unbalanced = state.unbalanced;
+  m.work = state.work;
+  m.energy_error = state.energy_error;
+  m.largest_energy = state.largest_energy;
+  return m;
+}
+
 std::vector<std::string> capabilities() {
-  std::vector<std::string> names{"frozen", "updated", "walls", "block", "sponge", "pack", "homogenise", "measure_face"};
+  std::vector<std::string> names{"frozen", "updated", "walls", "block", "sponge", "pack", "homogenise", "measure_face", "clumps",
+                                 "triaxial"};
   for (const std::string& field : dem::DemEngine::field_names()) names.push_back("field:" + field);
   return names;
 }
@@ -175,6 +210,14 @@ void serve(protocol::Server& server) {
     reply.contacts_per_grain = made.contacts_per_grain;
     return reply;
   });
+  service.on<protocol::Clumps>([&](protocol::Clumps&& m) {
+    const dem::Clumped made = engine.make_clumps({std::move(m.clump_size.data), m.gap, std::move(m.single.data)});
+    protocol::Clumped reply;
+    reply.clumps = made.clumps;
+    reply.grains = made.grains;
+    reply.aspect_ratio = made.aspect_ratio;
+    return reply;
+  });
   service.on<protocol::Walls>([&](const protocol::Walls& m) {
     engine.set_walls(to_walls(m));
     return Ok{};
@@ -200,6 +243,21 @@ void serve(protocol::Server& server) {
   service.on<protocol::MeasureFace>([&](protocol::MeasureFace&& m) {
     engine.phase = "measuring a face";
     return measure_face(engine, std::move(m));
+  });
+  std::optional<dem::TriaxialTest> test;
+  service.on<protocol::TriaxialConfine>([&](const protocol::TriaxialConfine& m) {
+    engine.phase = "confining a sample";
+    test.emplace(engine, dem::Confinement{m.pressure, static_cast<int>(m.axis), m.damping, m.unbalanced, m.max_steps,
+                                          m.step_fraction});
+    const dem::CurvePoint confined = test->confine();
+    return to_message({confined}, test->state());
+  });
+  service.on<protocol::TriaxialShear>([&](const protocol::TriaxialShear& m) {
+    if (!test || !engine.stretched())
+      throw engine::RequestError("TRIAXIAL_SHEAR", "the sample is not confined", "send TRIAXIAL_CONFINE first");
+    engine.phase = "shearing a sample";
+    const auto curve = test->shear({m.axial_strain, m.record_every, m.inertial_number, m.damping});
+    return to_message(curve, test->state());
   });
   server.run(service);
 }

@@ -27,16 +27,24 @@ void DemEngine::close_ledger() {
   if (!motion.measured) return;
   const double moving = block_.present() ? block_.kinetic_energy() : 0.0;
   const double turning = block_.present() ? block_.rotational_energy() : 0.0;
-  const double damped =
-      motion.damping_work.until_now() + rotation_.damping_work.until_now() + block_.damping_work.until_now();
+  const double clumps_moving = clumps_.empty() ? 0.0 : clumps_.kinetic_difference(motion);
+  const double clumps_turning = clumps_.empty() ? 0.0 : clumps_.rotational_difference(rotation_);
+  const double damped = motion.damping_work.until_now() + rotation_.damping_work.until_now() +
+                        block_.damping_work.until_now() + clumps_.damping_work.until_now();
   ledger_ = {};
-  ledger_.add("kinetic", Ledger::Kind::stored, motion.kinetic_energy() + moving);
+  ledger_.add("kinetic", Ledger::Kind::stored, motion.kinetic_energy() + clumps_moving + moving);
   ledger_.add("rotational", Ledger::Kind::stored,
-              (contact_options_.rotations ? rotation_.kinetic_energy() : 0.0) + turning);
+              (contact_options_.rotations ? rotation_.kinetic_energy() : 0.0) + clumps_turning + turning);
   ledger_.add("elastic", Ledger::Kind::stored, elastic_);
   ledger_.add("gravity", Ledger::Kind::stored, gravity_);
-  ledger_.add("friction", Ledger::Kind::lost, contact_.losses.friction + walls_.friction_work + block_.friction_work);
-  ledger_.add("broken_bonds", Ledger::Kind::lost, contact_.losses.broken);
+  ContactLosses lost = contact_.losses;
+  lost += walls_.losses;
+  lost += block_.losses;
+  ledger_.add("friction", Ledger::Kind::lost, lost.friction);
+  ledger_.add("rolling", Ledger::Kind::lost, lost.rolling);
+  ledger_.add("contact_damping", Ledger::Kind::lost, lost.damping);
+  ledger_.add("broken_bonds", Ledger::Kind::lost, lost.broken);
+  ledger_.add("switching", Ledger::Kind::lost, lost.switching);
   ledger_.add("damping", Ledger::Kind::lost, -damped);
   ledger_.add("dashpots", Ledger::Kind::lost, -motion.dashpot_work.until_now());
   ledger_.add("sponge", Ledger::Kind::lost, -sponge_.work.until_now());
@@ -103,18 +111,20 @@ std::vector<engine::NamedCount> DemEngine::counters() const {
   double surface_contacts = 0;
   for (const auto* list : {&walls_.contacts, &block_.contacts})
     for (const SurfaceContact& c : *list) surface_contacts += c.state & touching ? 1 : 0;
-  return {{"grains", static_cast<double>(grains_.size())},
-          {"contacts", contacts},
-          {"bonds", bonds},
-          {"broken", static_cast<double>(contact_.breaks)},
-          {"sliding", slides},
-          {"lost", static_cast<double>(lost_.size())},
-          {"fast", static_cast<double>(fast_)},
-          {"rebuilds", static_cast<double>(rebuilds_)},
-          {"surface_contacts", surface_contacts},
-          {"tied_contacts", tied_contacts},
-          {"tied_sliding", tied_sliding},
-          {"tied_broken", tied_broken}};
+  std::vector<engine::NamedCount> counts{{"grains", static_cast<double>(grains_.size())},
+                                         {"contacts", contacts},
+                                         {"bonds", bonds},
+                                         {"broken", static_cast<double>(contact_.breaks)},
+                                         {"sliding", slides},
+                                         {"lost", static_cast<double>(lost_.size())},
+                                         {"fast", static_cast<double>(fast_)},
+                                         {"rebuilds", static_cast<double>(rebuilds_)},
+                                         {"surface_contacts", surface_contacts},
+                                         {"tied_contacts", tied_contacts},
+                                         {"tied_sliding", tied_sliding},
+                                         {"tied_broken", tied_broken}};
+  if (!clumps_.empty()) counts.push_back({"clumps", static_cast<double>(clumps_.size())});
+  return counts;
 }
 
 std::vector<double> DemEngine::contact_rows() const {
@@ -148,14 +158,16 @@ double DemEngine::mean_contact_force() const {
 }
 
 double DemEngine::unbalanced() const {
-  const double force = motion.mean_unbalanced_force(), scale = mean_contact_force();
+  const double force = clumps_.empty() ? motion.mean_unbalanced_force() : clumps_.mean_unbalanced_force(motion);
+  const double scale = mean_contact_force();
   if (scale > 0.0) return force / scale;
   return force > 0.0 ? 1.0 : 0.0;
 }
 
 std::vector<double> DemEngine::momentum() const {
   std::vector<double> total = motion.momentum();
-  const Vec spins = rotation_.momentum();
+  Vec spins = rotation_.momentum();
+  if (!clumps_.empty()) spins += clumps_.angular_momentum_difference(motion, rotation_);
   for (int axis = 0; axis < 3; ++axis) total[3 + axis] += spins[axis];
   if (!block_.present()) return total;
   const std::vector<double> block = block_.momentum();

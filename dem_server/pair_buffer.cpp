@@ -4,12 +4,13 @@
 
 namespace gabion::dem {
 
-void PairBuffer::connect(const std::vector<std::int32_t>& start, const std::vector<std::int32_t>& second) {
+void PairBuffer::connect(const std::vector<std::int32_t>& start, const std::vector<std::int32_t>& second, bool couples) {
   const std::size_t grains = start.size() - 1;
   start_ = start;
   second_ = second;
   force.assign(second.size(), Vec{});
   moment.assign(second.size(), Vec{});
+  couple.assign(couples ? second.size() : 0, Vec{});
   incoming_start_.assign(grains + 1, 0);
   for (std::size_t i = 0; i < grains; ++i)
     for (std::int32_t c = start[i]; c < start[i + 1]; ++c)
@@ -24,6 +25,15 @@ void PairBuffer::connect(const std::vector<std::int32_t>& start, const std::vect
 
 void PairBuffer::gather(std::size_t first, std::size_t last, bool rotating, VecField& grain_force,
                         VecField& grain_torque, int threads) const {
+  const auto run = !rotating        ? &PairBuffer::gather_parts<false, false>
+                   : couple.empty() ? &PairBuffer::gather_parts<true, false>
+                                    : &PairBuffer::gather_parts<true, true>;
+  (this->*run)(first, last, grain_force, grain_torque, threads);
+}
+
+template <bool rotating, bool couples>
+void PairBuffer::gather_parts(std::size_t first, std::size_t last, VecField& grain_force, VecField& grain_torque,
+                              int threads) const {
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
   for (std::size_t g = first; g < last; ++g) {
     Vec f = grain_force[g];
@@ -39,6 +49,7 @@ void PairBuffer::gather(std::size_t first, std::size_t last, bool rotating, VecF
       const Vec arm = splat(m[3]);
       m[3] = 0.0;
       t = fma(arm, m, t);
+      if constexpr (couples) t -= couple[c];
     }
     for (std::int32_t c = start_[g]; c < start_[g + 1]; ++c) {
       Vec pair_force = force[c];
@@ -52,7 +63,10 @@ void PairBuffer::gather(std::size_t first, std::size_t last, bool rotating, VecF
       const Vec arm_j = splat(m[3]);
       m[3] = 0.0;
       t = fma(arm_i, m, t);
+      if constexpr (couples) t += couple[c];
       if (itself) t = fma(arm_j, m, t);
+      if constexpr (couples)
+        if (itself) t -= couple[c];
     }
     grain_force[g] = f;
     if (rotating) grain_torque[g] = t;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "dem_server/engine.hpp"
+#include "dem_server/restitution.hpp"
 #include "dem_server/stable_step.hpp"
 #include "protocol/engine/hash.hpp"
 
@@ -68,6 +69,7 @@ void DemEngine::set_grains(VecField position, std::vector<double> radius, std::v
   grains_.radius = std::move(radius);
   grains_.material = std::move(material);
   bonds_.clear();
+  clumps_.clear();
   built_ = false;
   boundary = {};
   tie.clear();
@@ -82,12 +84,15 @@ void DemEngine::set_materials(std::vector<GrainMaterial> materials) {
     const GrainMaterial& g = materials[m];
     const bool sound = g.normal_stiffness > 0.0 && std::isfinite(g.normal_stiffness) && g.shear_stiffness >= 0.0 &&
                        std::isfinite(g.shear_stiffness) && g.density > 0.0 && std::isfinite(g.density) &&
-                       g.friction >= 0.0 && g.normal_strength >= 0.0 && g.shear_strength >= 0.0;
+                       g.friction >= 0.0 && g.normal_strength >= 0.0 && g.shear_strength >= 0.0 &&
+                       g.rolling_stiffness >= 0.0 && std::isfinite(g.rolling_stiffness) && g.rolling_friction >= 0.0 &&
+                       g.restitution > 0.0 && g.restitution <= 1.0;
     if (!sound)
       throw RequestError("GRAIN_MATERIALS", "material " + std::to_string(m) + " has a value out of range",
-                         "normal stiffness and density must be above 0, the others at least 0; friction and "
-                         "strengths may be infinite");
+                         "normal stiffness and density must be above 0, restitution above 0 and at most 1, the others "
+                         "at least 0; friction, rolling friction and strengths may be infinite");
   }
+  for (GrainMaterial& m : materials) m.damping_ratio = damping_ratio(m.restitution);
   grains_.materials = std::move(materials);
   built_ = false;
 }
@@ -113,6 +118,7 @@ Bonded DemEngine::make_bonds(double gap) {
     const double sum_of_radii = grains_.radius[p.i] + grains_.radius[p.j];
     return norm(motion.position[p.j] - motion.position[p.i] + box.offset(p.image)) > (1.0 + reach) * sum_of_radii;
   });
+  if (!clumps_.empty()) clumps_.drop_internal(bonds_);
   built_ = false;
   const double grains = static_cast<double>(std::max<std::size_t>(grains_.size(), 1));
   return {bonds_.size(), 2.0 * static_cast<double>(bonds_.size()) / grains};
@@ -166,6 +172,8 @@ void DemEngine::check_setup() const {
                          "send GRAIN_MATERIALS with every material that grains use");
   if (contact_options_.geometry == Geometry::updated) return;
   const char* advice = "use geometry 'updated', or bonds of infinite strength";
+  if (!clumps_.empty())
+    throw RequestError("CONTACT_OPTIONS geometry", "frozen geometry knows no clumps", "use geometry 'updated'");
   if (bonds_.empty())
     throw RequestError("CONTACT_OPTIONS geometry", "frozen geometry needs bonds, there are none", advice);
   if (!walls_.empty() || block_.present())
@@ -182,7 +190,8 @@ void DemEngine::check_setup() const {
 }
 
 ContactSource DemEngine::source() const {
-  return {grains_, motion.position, built_domain_, weights, contact_.law == LawKind::breakable_bond};
+  return {grains_,         motion.position, built_domain_, weights, contact_.law == LawKind::breakable_bond,
+          contact_.rolling, contact_.damped};
 }
 
 LawKind DemEngine::choose_law() const {
@@ -215,18 +224,25 @@ void DemEngine::build_contacts() {
   contact_ = ContactForces{};
   contact_.law = choose_law();
   contact_.rotating = contact_options_.rotations;
-  const auto candidates =
+  for (const GrainMaterial& m : grains_.materials) {
+    contact_.rolling = contact_.rolling || (contact_.rotating && resists_rolling(m));
+    contact_.damped = contact_.damped || m.damping_ratio > 0.0;
+  }
+  auto candidates =
       frozen ? std::vector<Pair>{} : pairs_of(present_positions(), grains_.radius, skin_, built_domain_);
+  if (!clumps_.empty()) clumps_.drop_internal(candidates);
   contact_.table = first_table(source(), bonds_, candidates);
   contact_.threads = threads;
   contact_.table_changed(grains_.size());
   refuse_overlaps();
+  set_masses();
+  if (!clumps_.empty()) clumps_.build(built_domain_, motion, rotation_);
   if (frozen)
     frozen_.build(contact_.table, VecField(grains_.size(), Vec{}), 0.0);
   else
     contact_.springs_from_displacements(motion.displacement, rotation_.angle);
   displacement_at_build_ = motion.displacement;
-  set_masses();
+  strain_at_build_ = 0.0;
   built_ = true;
   built_options_ = options;
   built_weights_ = weights;
@@ -290,6 +306,11 @@ void DemEngine::hold_rotations() {
         rotation_.mobility[e] = 0.0;
         rotation_.spin[e] = Vec{};
       }
+  for (std::size_t i = 0; i < grains_.size(); ++i)
+    if (!grains_.material_of(i).rotates) {
+      rotation_.mobility[i] = 0.0;
+      rotation_.spin[i] = Vec{};
+    }
 }
 
 void DemEngine::find_surfaces() {
@@ -313,6 +334,7 @@ void DemEngine::prepare() {
   else
     contact_.table_changed(grains_.size());
   boundary.apply_to(motion);
+  if (!clumps_.empty()) refuse_bound_clumps();
   hold_rotations();
   find_surfaces();
   step_size_ = 0.0;
@@ -331,7 +353,10 @@ std::uint64_t DemEngine::rotation_groups() const {
 
 double DemEngine::stable_step() {
   phase = "finding the stable step";
-  double highest = 0.0;
+  if (!clumps_.empty()) refuse_bound_clumps();
+  double highest = 0.0, viscous = 0.0;
+  const bool rotating = contact_options_.rotations;
+  const Clumps* bodies = &clumps_;
   if (contact_options_.geometry == Geometry::frozen) {
     highest = highest_eigenvalue(frozen_, motion, rotation_, contact_options_.rotations).highest;
   } else {
@@ -340,23 +365,34 @@ double DemEngine::stable_step() {
     network.build(contact_.table, motion.displacement, near);
     std::vector<SurfaceSpring> springs;
     walls_.add_springs(grains_, near, springs);
-    const double of_block = block_.add_springs(grains_, near, springs);
+    const Spectra of_block = block_.add_springs(grains_, near, springs);
+    if (contact_.rolling) network.add_rolling(contact_.table, motion.displacement, near);
+    if (contact_.damped) {
+      LinearNetwork dashpots;
+      dashpots.build_dashpots(contact_.table, motion.displacement, near, springs);
+      viscous = std::max(of_block.viscosity, highest_eigenvalue(dashpots, motion, rotation_, rotating, bodies).highest);
+    }
     network.add_surface(std::move(springs));
-    highest = std::max(of_block, highest_eigenvalue(network, motion, rotation_, contact_options_.rotations).highest);
-    // contacts may form at any time: never less than what two equal grains give
-    constexpr double normal_share = 1.0, shear_share = 3.5;
+    highest = std::max(of_block.stiffness, highest_eigenvalue(network, motion, rotation_, rotating, bodies).highest);
+    // contacts may form at any time: never less than what two equal grains give; in a clump they move less easily
+    constexpr double normal_share = 1.0, shear_share = 3.5, rolling_share = 2.5;
     for (std::size_t i = 0; i < grains_.size(); ++i) {
       const GrainMaterial& m = grains_.material_of(i);
-      const double k = std::max(normal_share * m.normal_stiffness,
-                                (contact_options_.rotations ? shear_share : normal_share) * m.shear_stiffness);
-      highest = std::max(highest, k * grains_.radius[i] / motion.plain_mass[i]);
+      const double per_mass = grains_.radius[i] / motion.plain_mass[i], turning = rotating ? shear_share : normal_share;
+      double k = std::max(normal_share * m.normal_stiffness, turning * m.shear_stiffness);
+      if (contact_.rolling && resists_rolling(m))
+        k = std::max(k, rolling_share * m.rolling_stiffness * m.shear_stiffness);
+      highest = std::max(highest, k * per_mass);
+      const double c = std::max(normal_share * std::sqrt(m.normal_stiffness), turning * std::sqrt(m.shear_stiffness));
+      viscous = std::max(viscous, 2.0 * m.damping_ratio * c * std::sqrt(per_mass));
     }
   }
   phase = "idle";
   if (!(highest > 0.0))
     throw engine::PhysicsError("stable step", "no grain is held by any spring or free to move",
                                "check bonds and constraints");
-  return 2.0 / std::sqrt(highest);
+  // dashpots take the velocity of half a step before: 4 M - dt^2 K - 2 dt C must stay positive
+  return 4.0 / (viscous + std::sqrt(viscous * viscous + 4.0 * highest));
 }
 
 }  // namespace gabion::dem

@@ -59,14 +59,21 @@ class Sequence {
 
 class Operator {
  public:
-  Operator(LinearNetwork& network, const engine::Motion& motion, const Rotation& rotation, bool rotating)
-      : network_(network), rotating_(rotating), root_(motion.size()), u_(motion.size()), f_(motion.size()) {
+  Operator(LinearNetwork& network, const engine::Motion& motion, const Rotation& rotation, bool rotating,
+           const Clumps* clumps)
+      : network_(network),
+        rotating_(rotating),
+        clumps_(clumps),
+        root_(motion.size()),
+        u_(motion.size()),
+        f_(motion.size()) {
     for (std::size_t i = 0; i < motion.size(); ++i) {
       const Vec freedom = motion.freedom[i];
       const double root = 1.0 / std::sqrt(motion.mass[i]);
       for (int axis = 0; axis < 3; ++axis) root_.move[i][axis] = freedom[axis] > 0.0 ? root : 0.0;
       if (rotating) root_.turn[i] = vec(1, 1, 1) * splat(std::sqrt(rotation.mobility[i]));
     }
+    if (clumps_ != nullptr) join_members(rotation, rotating);
   }
 
   /// out = A in
@@ -76,11 +83,13 @@ class Operator {
       u_.turn[i] = root_.turn[i] * in.turn[i];
       f_.move[i] = f_.turn[i] = Vec{};
     }
+    spread_over_members(in);
     network_.add_forces(0, in.move.size(), u_.move, u_.turn, f_.move, f_.turn, rotating_, 1);
     for (std::size_t i = 0; i < in.move.size(); ++i) {
       out.move[i] = -root_.move[i] * f_.move[i];
       out.turn[i] = -root_.turn[i] * f_.turn[i];
     }
+    sum_over_members(out);
   }
 
   ScaledVector start() const {
@@ -95,18 +104,71 @@ class Operator {
   }
 
  private:
+  /// A body's six unknowns stand at its first member, the other members have none.
+  void join_members(const Rotation& rotation, bool rotating) {
+    for (std::size_t b = 0; b < clumps_->size(); ++b) {
+      bool turns = rotating;
+      for (const std::int32_t i : clumps_->members(b)) {
+        turns = turns && rotation.mobility[i] > 0.0;
+        root_.move[i] = root_.turn[i] = Vec{};
+      }
+      const std::int32_t first = clumps_->members(b).front();
+      root_.move[first] = vec(1, 1, 1) * splat(1.0 / std::sqrt(clumps_->mass(b)));
+      if (turns) root_.turn[first] = vec(1, 1, 1);
+      Eigen::Matrix3d inverse;
+      const std::array<Vec, 3> columns = clumps_->inverse_inertia(b);
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) inverse(r, c) = 0.5 * (columns[c][r] + columns[r][c]);
+      const Eigen::Matrix3d root = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inverse).operatorSqrt();
+      turn_roots_.push_back({});
+      for (int c = 0; c < 3 && turns; ++c) turn_roots_.back()[c] = vec(root(0, c), root(1, c), root(2, c));
+    }
+  }
+
+  Vec turn_root(std::size_t b, Vec x) const {
+    const std::array<Vec, 3>& columns = turn_roots_[b];
+    return splat(x[0]) * columns[0] + splat(x[1]) * columns[1] + splat(x[2]) * columns[2];
+  }
+
+  void spread_over_members(const ScaledVector& in) {
+    for (std::size_t b = 0; b < turn_roots_.size(); ++b) {
+      const auto members = clumps_->members(b);
+      const Vec move = u_.move[members.front()], turn = turn_root(b, in.turn[members.front()]);
+      for (std::size_t k = 0; k < members.size(); ++k) {
+        u_.move[members[k]] = move + cross(turn, clumps_->arm(b, k));
+        u_.turn[members[k]] = turn;
+      }
+    }
+  }
+
+  void sum_over_members(ScaledVector& out) {
+    for (std::size_t b = 0; b < turn_roots_.size(); ++b) {
+      const auto members = clumps_->members(b);
+      Vec force{}, torque{};
+      for (std::size_t k = 0; k < members.size(); ++k) {
+        const Vec f = f_.move[members[k]];
+        force += f;
+        torque += f_.turn[members[k]] + cross(clumps_->arm(b, k), f);
+      }
+      out.move[members.front()] = -root_.move[members.front()] * force;
+      out.turn[members.front()] = -turn_root(b, torque);
+    }
+  }
+
   LinearNetwork& network_;
   bool rotating_;
+  const Clumps* clumps_;
+  std::vector<std::array<Vec, 3>> turn_roots_;  ///< J^-1/2 of each clump, by columns; 0 where it does not turn
   ScaledVector root_, u_, f_;
 };
 
 }  // namespace
 
 Spectrum highest_eigenvalue(LinearNetwork& network, const engine::Motion& motion, const Rotation& rotation,
-                            bool rotating) {
+                            bool rotating, const Clumps* clumps) {
   constexpr int fewest = 40, most = 400, stride = 10;
   constexpr double wanted = 1e-4;  // residual over eigenvalue
-  Operator a(network, motion, rotation, rotating);
+  Operator a(network, motion, rotation, rotating, clumps);
   ScaledVector q = a.start(), before(motion.size()), next(motion.size());
   const double length = std::sqrt(inner(q, q));
   if (!(length > 0.0)) return {};

@@ -1,6 +1,7 @@
 #pragma once
 // Highest frequency of the linearised packing.
 
+#include "dem_server/clumps.hpp"
 #include "dem_server/linear_network.hpp"
 #include "dem_server/rotation.hpp"
 #include "protocol/engine/motion.hpp"
@@ -13,8 +14,9 @@ struct Spectrum {
   int iterations = 0;
 };
 
-/// Lanczos on M^-1/2 K M^-1/2 over free displacements and free rotations.
+/// Lanczos on M^-1/2 K M^-1/2 over free displacements and free rotations; members of a clump move as one body,
+/// u_i = U + Theta x a_i, with its mass and inertia.
 Spectrum highest_eigenvalue(LinearNetwork& network, const engine::Motion& motion, const Rotation& rotation,
-                            bool rotating);
+                            bool rotating, const Clumps* clumps = nullptr);
 
 }  // namespace gabion::dem

@@ -26,7 +26,7 @@ void Walls::find(const ContactSource& source, const VecField& displacement, doub
       SurfaceContact contact;
       contact.surface = surface;
       contact.grain = grain;
-      contact.stiffness = surface_spring(source.grains, i, wall.friction, source.weights.at(source.rest[i]));
+      set_parameters(contact, source.grains, i, wall.friction, INFINITY, source.weights.at(source.rest[i]));
       contact.normal = -wall.normal;
       contact.elongation = gap;
       found.push_back(contact);
@@ -63,14 +63,16 @@ void Walls::add_forces(const Grains& grains, double past_step, engine::Motion& m
     const Vec lever = splat(contact_arm(grains.radius[c.grain], e)) * n;
     Vec slip = wall.velocity - motion.velocity[c.grain];
     double twist = 0.0;
+    Vec spin{};
     if (rotating) {
       slip -= cross(rotation.spin[c.grain], lever);
       twist = 0.5 * dot(rotation.spin[c.grain], n);
+      spin = -rotation.spin[c.grain];
     }
-    friction_work += follow_surface(c, {e, n, slip, twist}, past_step);
+    losses += follow_surface(c, {e, n, slip, twist, spin}, past_step);
     if (!(c.state & touching)) continue;
     motion.force[c.grain] += c.force;
-    if (rotating) rotation.torque[c.grain] += cross(lever, c.force);
+    if (rotating) rotation.torque[c.grain] += cross(lever, c.force) + c.couple();
   }
 }
 
@@ -97,7 +99,7 @@ void Walls::add_springs(const Grains& grains, double near, std::vector<SurfaceSp
   for (const SurfaceContact& c : contacts)
     if (c.elongation <= near)
       springs.push_back({c.grain, c.normal, contact_arm(grains.radius[c.grain], std::min(c.elongation, 0.0)),
-                         c.stiffness.normal, c.stiffness.shear});
+                         c.stiffness.normal, c.stiffness.shear, c.rolling.stiffness, c.damper});
 }
 
 }  // namespace gabion::dem

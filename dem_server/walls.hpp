@@ -22,7 +22,7 @@ class Walls {
  public:
   std::vector<Wall> walls;
   std::vector<SurfaceContact> contacts;  ///< sorted by (wall, grain), near pairs included
-  double friction_work = 0.0;            ///< J
+  ContactLosses losses;
   engine::Work work;                     ///< of the walls on the grains, J
 
   bool empty() const { return walls.empty(); }

@@ -19,7 +19,8 @@ struct PlacedBlock {
 /// grains: present positions. Throws std::runtime_error when no grain lies under the block.
 PlacedBlock place_block(const scene::Block& block, const scene::Box& ground, const GrainSet& grains);
 
-/// Height of the highest tops of grains, mean over square cells of the ground's plan; cells without grains are left out.
-double mean_surface_level(const scene::Box& ground, const GrainSet& grains);
+/// Height of the highest tops of grains, mean over the square cells of the ground's plan that lie within two sides of the
+/// block: near the rim of a zone a cell misses grains. Cells without grains are left out.
+double mean_surface_level(const scene::Box& ground, const GrainSet& grains, const scene::Block& block);
 
 }  // namespace gabion::coupler

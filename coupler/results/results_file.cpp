@@ -173,6 +173,7 @@ void ResultsFile::write_grain_geometry(const GrainGeometry& grains) {
   c.fixed_array(part, "material", widened(grains.material), false);
   c.fixed_array(part, "origin_id", grains.origin_id, false);
   c.fixed_array(part, "weight", grains.weight, false);
+  c.fixed_array(part, "clump", widened(grains.clump), false);
 }
 
 void ResultsFile::write_mesh_geometry(const MeshGeometry& mesh) {

@@ -20,13 +20,14 @@
 
 namespace gabion::coupler {
 
-/// Spheres at rest. The arrays must have n entries (position 3 n); weight and origin_id may be empty.
+/// Spheres at rest. The arrays must have n entries (position 3 n); weight, origin_id and clump may be empty.
 struct GrainGeometry {
   std::span<const double> position;         ///< [n][3] m
   std::span<const double> radius;           ///< [n] m
   std::span<const std::int32_t> material;   ///< [n]
   std::span<const std::int64_t> origin_id;  ///< [n] number in the packing, the same in every model of a scene
   std::span<const double> weight;           ///< [n] share that the grains carry, 1 outside the overlap
+  std::span<const std::int32_t> clump = {}; ///< [n] number of the clump, -1 for single grains
 };
 
 /// Bricks at rest. wrap, period as in drawn_mesh; material, weight may be empty.

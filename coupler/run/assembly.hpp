@@ -20,6 +20,7 @@ struct Assembly {
   GrainSet grains;                     ///< plain masses filled in by configure_dem
   std::vector<std::int32_t> material;  ///< of each grain, index into scene.materials
   double bond_gap = 0.0;
+  std::vector<std::int32_t> clump;  ///< of each grain, -1 for single ones; empty without clumps; filled in by configure_dem
   HexMesh mesh;
   Elasticity elasticity;
   FaceLayers layers;  ///< of the mesh

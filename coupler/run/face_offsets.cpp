@@ -21,7 +21,7 @@ constexpr double farthest_window = 3.0;
 /// What holds the face first, by the order of the stages; 0 where its normal is never held.
 std::uint8_t first_hold(int face, const scene::Scene& scene) {
   const auto normal_held = [&](const scene::Face& condition) -> std::uint8_t {
-    const std::uint8_t bits = held_components(face, condition);
+    const std::uint8_t bits = held_components(face, condition, true);
     return bits & 1 << face / 2 ? bits : std::uint8_t{0};
   };
   if (const std::uint8_t bits = normal_held(scene.faces[face])) return bits;

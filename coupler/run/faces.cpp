@@ -14,10 +14,11 @@ std::uint8_t bit(int axis) { return static_cast<std::uint8_t>(1 << axis); }
 /// The two directions along a face.
 std::array<int, 2> tangents(int face) { return {(face / 2 + 1) % 3, (face / 2 + 2) % 3}; }
 
-std::vector<Hold> holds_of(int face, const scene::Face& condition, const std::vector<std::int32_t>& held, const SeatPoints& seat) {
+std::vector<Hold> holds_of(int face, const scene::Face& condition, const std::vector<std::int32_t>& held, const SeatPoints& seat,
+                           bool grains) {
   std::vector<Hold> holds;
   const std::string name = face_names[face];
-  if (const std::uint8_t components = held_components(face, condition)) holds.push_back({name, held, components});
+  if (const std::uint8_t components = held_components(face, condition, grains)) holds.push_back({name, held, components});
   if (condition.kind != "seat" || seat.middle < 0) return holds;
   const auto [first, second] = tangents(face);
   holds.push_back({name + ".seat", {seat.middle}, static_cast<std::uint8_t>(bit(first) | bit(second))});
@@ -29,8 +30,8 @@ void put_triple(std::vector<double>& out, double x, double y, double z) { out.in
 
 }  // namespace
 
-std::uint8_t held_components(int face, const scene::Face& condition) {
-  if (condition.kind == "fixed") return 7;
+std::uint8_t held_components(int face, const scene::Face& condition, bool grains) {
+  if (condition.kind == "fixed" || (condition.kind == "wall" && !grains)) return 7;
   if (condition.kind == "roller" || condition.kind == "seat") return bit(face / 2);
   std::uint8_t bits = 0;
   if (condition.kind == "velocity")
@@ -88,7 +89,8 @@ void FaceSide::apply(int face, const scene::Face& condition, const std::vector<s
   const int normal = face / 2;
   if (condition.kind == "absorbing")
     for (const Hold& h : state.holds) keep_reactions(h);
-  hold(face, condition, holds_of(face, condition, held, seat));
+  hold(face, condition, holds_of(face, condition, held, seat, grains_));
+  if (grains_) set_wall(face, condition);
 
   const bool loaded = condition.kind == "pressure" || condition.kind == "traction";
   if (loaded || state.loaded) {
@@ -147,6 +149,32 @@ void FaceSide::apply(int face, const scene::Face& condition, const std::vector<s
   }
 }
 
+/// Rigid walls stand on the faces of the ground's box and do not move.
+void FaceSide::set_wall(int face, const scene::Face& condition) {
+  std::optional<double>& friction = walls_[face];
+  const std::optional<double> wanted = condition.kind == "wall" ? std::optional(condition.friction) : std::nullopt;
+  if (wanted == friction) return;
+  friction = wanted;
+  protocol::Walls walls;
+  std::vector<double> points, normals;
+  for (int f = 0; f < 6; ++f) {
+    if (!walls_[f]) continue;
+    Triple point{}, normal{};
+    point[f / 2] = f % 2 == 0 ? ground_.lo[f / 2] : ground_.hi[f / 2];
+    normal[f / 2] = f % 2 == 0 ? 1.0 : -1.0;
+    put_triple(points, point[0], point[1], point[2]);
+    put_triple(normals, normal[0], normal[1], normal[2]);
+    walls.friction.data.push_back(*walls_[f]);
+  }
+  const std::uint64_t count = walls.friction.data.size();
+  walls.friction.set_shape(std::array<std::uint64_t, 1>{count});
+  walls.velocity = std::vector<double>(3 * count, 0.0);
+  walls.point = points;
+  walls.normal = normals;
+  link_->tell(walls);
+  link_->ask<protocol::Ready>(protocol::Prepare{});
+}
+
 void FaceSide::keep_reactions(const Hold& hold) {
   const std::vector<double> force = link_->fetch("force"), tie = link_->fetch("tie_force");
   protocol::Loads dead;
@@ -194,8 +222,8 @@ Inertia FaceSide::inertia(const std::vector<double>& mass, double dt) const {
 
 Faces::Faces(const scene::Scene& scene, const Assembly& assembly, EngineLink* dem, EngineLink* continuum)
     : assembly_(assembly),
-      grains_(dem, assembly.grains.position.size()),
-      nodes_(continuum, assembly.mesh.nodes.size()) {
+      grains_(dem, assembly.grains.position.size(), scene.ground.box, true),
+      nodes_(continuum, assembly.mesh.nodes.size(), scene.ground.box, false) {
   for (int face = 0; face < 6; ++face) {
     if (scene.ground.periodic[face / 2]) continue;
     if (dem) {

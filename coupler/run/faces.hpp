@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,14 +30,15 @@ struct SeatPoints {
 };
 SeatPoints seat_points(int face, const std::vector<std::int32_t>& held, const std::vector<Point>& position, const scene::Box& ground);
 
-/// Bits x = 1, y = 2, z = 4 that a condition holds on its face.
-std::uint8_t held_components(int face, const scene::Face& condition);
+/// Bits x = 1, y = 2, z = 4 that a condition holds on its face, of grains or of nodes.
+std::uint8_t held_components(int face, const scene::Face& condition, bool grains);
 
 /// One engine's share of the faces.
 class FaceSide {
  public:
-  /// link may be null: the medium is absent.
-  FaceSide(EngineLink* link, std::size_t points) : link_(link), freedom_(points, Triple{1, 1, 1}), viscosity_(points) {}
+  /// link may be null: the medium is absent. grains: this is the grains' side, else the mesh's.
+  FaceSide(EngineLink* link, std::size_t points, const scene::Box& ground, bool grains)
+      : link_(link), ground_(ground), grains_(grains), freedom_(points, Triple{1, 1, 1}), viscosity_(points) {}
 
   /// Replaces the condition of a face. held: entities a plate would hold; patch: areas. Where the face was held
   /// before and now absorbs, the reactions of the last step stay on as dead loads.
@@ -53,8 +55,12 @@ class FaceSide {
  private:
   void hold(int face, const scene::Face& condition, std::vector<Hold> holds);
   void keep_reactions(const Hold& hold);
+  void set_wall(int face, const scene::Face& condition);
 
   EngineLink* link_;
+  scene::Box ground_;
+  bool grains_;
+  std::array<std::optional<double>, 6> walls_;  ///< friction of the wall on each face
   struct State {
     std::vector<Hold> holds;
     std::vector<std::int32_t> absorbing;

@@ -28,9 +28,21 @@ void InterfaceTie::send_tie(EngineLink& link, const SparseRows& rows, const std:
 }
 
 void InterfaceTie::set_step(double dt, const Inertia& grains, const Inertia& nodes,
-                            const std::vector<double>& grain_weights) {
+                            const std::vector<double>& grain_weights, bool absorb) {
   multipliers_ = std::make_unique<Multipliers>(rows_, grains, nodes, scene_.coupling.solve == "row_sum");
-  if (scene_.coupling.sponge.strength > 0.0) send_sponge(dt, grain_weights);
+  if (scene_.coupling.sponge.strength == 0.0) return;
+  if (absorb)
+    send_sponge(dt, grain_weights);
+  else if (absorbs_)
+    remove_sponge();
+  absorbs_ = absorb;
+}
+
+void InterfaceTie::remove_sponge() {
+  protocol::Sponge none;
+  none.hats = static_cast<std::uint32_t>(rows_.slots);
+  none.row_ptr = std::vector<std::int32_t>{0};
+  dem_.tell(none);
 }
 
 /// beta_i = min(1 - w_i, 1 - exp(-eta (1 - w_i)^2 dt)), eta = strength c/L; see docs/theory.md, "Sponge".

@@ -16,7 +16,8 @@ class InterfaceTie {
   InterfaceTie(const scene::Scene& scene, const Assembly& assembly, EngineLink& dem, EngineLink& continuum);
 
   /// Factors the multiplier matrix for these masses and constraints; sends the sponge for this step size.
-  void set_step(double dt, const Inertia& grains, const Inertia& nodes, const std::vector<double>& grain_weights);
+  /// absorb: in a stage that comes to rest by damping the sponge has nothing to do and would only hold grains up.
+  void set_step(double dt, const Inertia& grains, const Inertia& nodes, const std::vector<double>& grain_weights, bool absorb);
 
   /// One step: both gaps to one answer, [slots][3], valid until the next call.
   std::span<const double> solve(std::span<const double> from_grains, std::span<const double> from_nodes);
@@ -31,6 +32,7 @@ class InterfaceTie {
  private:
   void send_tie(EngineLink& link, const SparseRows& rows, const std::vector<std::int32_t>& tied);
   void send_sponge(double dt, const std::vector<double>& grain_weights);
+  void remove_sponge();
 
   const scene::Scene& scene_;
   const Assembly& assembly_;
@@ -38,6 +40,7 @@ class InterfaceTie {
   InterfaceRows rows_;
   std::unique_ptr<Multipliers> multipliers_;
   std::vector<double> answer_;
+  bool absorbs_ = false;  ///< the engine has the sponge
 };
 
 }  // namespace gabion::coupler

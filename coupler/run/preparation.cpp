@@ -8,7 +8,10 @@
 #include <random>
 #include <stdexcept>
 
+#include "coupler/ground/loose_grains.hpp"
 #include "coupler/results/earlier_state.hpp"
+#include "coupler/scene/packing_file.hpp"
+#include "coupler/run/clumps.hpp"
 #include "protocol/engine/hash.hpp"
 
 namespace gabion::coupler {
@@ -53,9 +56,15 @@ protocol::GrainMaterials grain_materials(const std::vector<scene::Material>& mat
     m.friction.data.push_back(material.friction);
     m.normal_strength.data.push_back(material.normal_strength);
     m.shear_strength.data.push_back(material.shear_strength);
+    m.rolling_stiffness.data.push_back(material.rolling_stiffness);
+    m.rolling_friction.data.push_back(material.rolling_friction);
+    m.restitution.data.push_back(material.restitution);
+    m.rotation.data.push_back(material.rotates ? 1 : 0);
   }
-  for (auto* field : {&m.normal_stiffness, &m.shear_stiffness, &m.density, &m.friction, &m.normal_strength, &m.shear_strength})
+  for (auto* field : {&m.normal_stiffness, &m.shear_stiffness, &m.density, &m.friction, &m.normal_strength, &m.shear_strength,
+                      &m.rolling_stiffness, &m.rolling_friction, &m.restitution})
     field->set_shape(std::array<std::uint64_t, 1>{field->data.size()});
+  m.rotation.set_shape(std::array<std::uint64_t, 1>{m.rotation.data.size()});
   return m;
 }
 
@@ -78,8 +87,29 @@ void send_weights(const Assembly& assembly, EngineLink& link) {
 
 }  // namespace
 
+namespace {
+
+/// Grains as a file gives them; all of them stay.
+Packing read_packing(const scene::Scene& scene) {
+  const scene::PackingFile file = scene::read_packing_file(scene.grains.file);
+  Packing packing;
+  packing.position = file.position;
+  packing.radius = file.radius;
+  packing.gap = scene.grains.bond_gap;
+  const double grains = static_cast<double>(packing.radius.size());
+  packing.contacts_per_grain = 2.0 * static_cast<double>(contact_pairs(packing, scene.ground).size()) / grains;
+  double volume = 1.0, solid = 0.0;
+  for (int axis = 0; axis < 3; ++axis) volume *= scene.ground.box.hi[axis] - scene.ground.box.lo[axis];
+  for (const double r : packing.radius) solid += 4.0 / 3.0 * std::acos(-1.0) * r * r * r;
+  packing.solid_fraction = solid / volume;
+  return packing;
+}
+
+}  // namespace
+
 Packing obtain_packing(const scene::Scene& scene, EngineLink* dem, const Cache& cache, const Log& log) {
-  if (scene.grains.packing != "random") return make_lattice(scene);
+  if (scene::is_lattice(scene.grains)) return make_lattice(scene);
+  if (scene.grains.packing == "file") return read_packing(scene);
   protocol::Pack pack;
   pack.box_lo = flatten(scene.ground.box.lo);
   pack.box_hi = flatten(scene.ground.box.hi);
@@ -160,7 +190,7 @@ void tell_bonded_packing(const scene::Scene& scene, const Packing& packing, Engi
 
 Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_packing, EngineLink* dem, const Cache& cache,
                              const Log& log) {
-  const bool lattice = whole.grains.packing != "random";
+  const bool lattice = scene::is_lattice(whole.grains);
   const scene::Scene scene = lattice ? lattice_sample(whole, whole_packing) : whole;
   const Packing packing = lattice ? make_lattice(scene) : whole_packing;
   const scene::Material& soil = scene.material(scene.ground.material);
@@ -175,7 +205,9 @@ Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_pac
   key.add(cache_version);
   add(key, flatten(packing.position));
   add(key, packing.radius);
-  add(key, {packing.gap, soil.normal_stiffness, soil.shear_stiffness, soil.density, scene.grains.rotations ? 1.0 : 0.0});
+  const bool rotating = scene.grains.rotations && soil.rotates;
+  // not 0: under it older programs kept answers in which grains rotated all the same
+  add(key, {packing.gap, soil.normal_stiffness, soil.shear_stiffness, soil.density, rotating ? 1.0 : -1.0});
   add(key, flatten(window.lo));
   add(key, flatten(window.hi));
   add(key, flatten(scene.ground.box.lo));
@@ -211,7 +243,7 @@ Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_pac
   return elasticity;
 }
 
-protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, EngineLink& dem) {
+protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, EngineLink& dem, const Log& log) {
   dem.tell(options_of(scene));
   dem.tell(grain_materials(scene.materials));
   dem.tell(contact_options(scene));
@@ -221,11 +253,17 @@ protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, Eng
   grains.material = assembly.material;
   dem.tell(grains);
   if (assembly.zone.overlap() > 0.0 || scene.coupling.border_weights) send_weights(assembly, dem);
+  const std::optional<protocol::Clumps> clumps = clump_request(scene, assembly);
+  if (clumps) log(describe_clumps(dem.ask<protocol::Clumped>(*clumps), scene, assembly));
   protocol::Bonds bonds;
   bonds.gap = assembly.bond_gap;
   dem.ask<protocol::Bonded>(bonds);
   protocol::Ready ready = dem.ask<protocol::Ready>(protocol::Prepare{});
   assembly.grains.plain_mass = ready.plain_mass.data;
+  if (clumps) {
+    const std::vector<double> numbers = dem.fetch("clump");
+    assembly.clump.assign(numbers.begin(), numbers.end());
+  }
   return ready;
 }
 

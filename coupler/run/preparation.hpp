@@ -28,8 +28,8 @@ void tell_bonded_packing(const scene::Scene& scene, const Packing& packing, Engi
 std::array<double, 6> obtain_face_offsets(const scene::Scene& scene, const Packing& packing, EngineLink* dem, const Cache& cache,
                                           const Log& log);
 
-/// Everything but faces and ties; returns masses and stable step. Fills in assembly.grains.plain_mass.
-protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, EngineLink& dem);
+/// Everything but faces and ties; returns masses and stable step. Fills in assembly.grains.plain_mass and assembly.clump.
+protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, EngineLink& dem, const Log& log);
 protocol::Ready configure_continuum(const scene::Scene& scene, const Assembly& assembly, EngineLink& continuum);
 
 /// Puts the scene's initial motion and wave packet into velocity (at -dt/2) and displacement of both engines.

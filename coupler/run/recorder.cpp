@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace gabion::coupler {
 
@@ -47,7 +48,7 @@ Recorder::Recorder(RunFolder& folder, const scene::Scene& scene, const Assembly&
   if (assembly.has_grains) {
     const std::vector<double> position = flat(assembly.grains.position);
     const std::vector<std::int64_t> origin(assembly.origin.begin(), assembly.origin.end());
-    results_.write_grain_geometry({position, assembly.grains.radius, assembly.material, origin, grain_weights});
+    results_.write_grain_geometry({position, assembly.grains.radius, assembly.material, origin, grain_weights, assembly.clump});
   }
   if (assembly.has_mesh) {
     const std::vector<double> nodes = flat(assembly.mesh.nodes);
@@ -182,7 +183,8 @@ void Recorder::block_shape(const PlacedBlock& block) {
   results_.write_block_geometry({block_vertices_, block.face_ptr, block.face_vertices});
 }
 
-void Recorder::block_row(double time, const PlacedBlock& block, const std::vector<double>& state) {
+void Recorder::block_row(double time, const PlacedBlock& block, const std::vector<double>& state, const std::vector<double>& forces,
+                         std::uint64_t steps) {
   constexpr std::size_t velocity = 3, spin = 10, force = 13, torque = 16, corners = 19;
   block_vertices_.assign(state.begin() + corners, state.end());
   double lowest = scene::infinity;
@@ -190,10 +192,21 @@ void Recorder::block_row(double time, const PlacedBlock& block, const std::vecto
   if (!block_)
     block_ = std::make_unique<History>(folder_.history(
         "block.csv", {"time [s]", "penetration [m]", "velocity.x [m/s]", "velocity.y [m/s]", "velocity.z [m/s]", "force.x [N]", "force.y [N]",
-                      "force.z [N]", "spin.x [rad/s]", "spin.y [rad/s]", "spin.z [rad/s]", "torque.x [N m]", "torque.y [N m]", "torque.z [N m]"}));
-  std::vector<double> row{time, block.surface_level - lowest};
+                      "force.z [N]", "spin.x [rad/s]", "spin.y [rad/s]", "spin.z [rad/s]", "torque.x [N m]", "torque.y [N m]", "torque.z [N m]", "force_mean.z [N]",
+                      "force_largest.z [N]"}));
+  // of the steps since the row before
+  const std::size_t count = std::min<std::size_t>(steps, forces.size() / 3);
+  double sum = 0.0, largest = 0.0;
+  for (std::size_t k = forces.size() - 3 * count; k < forces.size(); k += 3) {
+    sum += forces[k + 2];
+    if (std::fabs(forces[k + 2]) > std::fabs(largest)) largest = forces[k + 2];
+  }
+  const double mean = sum / static_cast<double>(std::max<std::size_t>(1, count)), penetration = block.surface_level - lowest;
+  impact_.add(time, penetration, -state[velocity + 2], mean, largest);
+  std::vector<double> row{time, penetration};
   for (const std::size_t start : {velocity, force, spin, torque})
     for (std::size_t axis = 0; axis < 3; ++axis) row.push_back(state[start + axis]);
+  row.insert(row.end(), {mean, largest});
   block_->append(row);
 }
 
@@ -204,6 +217,7 @@ void Recorder::state(const std::string& stage, std::uint64_t step, double time, 
   std::vector<double> u_grains, u_nodes;
   if (dem) {
     u_grains = dem->fetch("displacement");
+    count_ejecta(u_grains);
     results_.grain_field("displacement", less(u_grains, zeroed_grains_), 3, "m");
     if (!zeroed_grains_.empty()) results_.grain_field("zeroed_displacement", zeroed_grains_, 3, "m");
     for (const FieldOf& f : grain_fields) results_.grain_field(f.name, dem->fetch(f.name), f.components, f.unit);
@@ -221,6 +235,20 @@ void Recorder::state(const std::string& stage, std::uint64_t step, double time, 
   if (tie) interface_fields(dt, *continuum, *tie, u_grains, u_nodes);
   if (!block_vertices_.empty()) results_.block_vertices(block_vertices_);
   results_.end_state();
+}
+
+/// Ejected: a grain of which nothing is within a mean diameter of the surface.
+void Recorder::count_ejecta(const std::vector<double>& displacement) {
+  if (thrown_.empty()) return;
+  const GrainSet& grains = assembly_.grains;
+  const double mean_diameter = 2.0 * std::accumulate(grains.radius.begin(), grains.radius.end(), 0.0) / static_cast<double>(thrown_.size());
+  in_flight_ = 0;
+  for (std::size_t g = 0; g < thrown_.size(); ++g) {
+    const double height = grains.position[g][2] + displacement[3 * g + 2] - surface_level_;
+    if (height - grains.radius[g] < mean_diameter) continue;
+    thrown_[g] = 1;
+    ++in_flight_;
+  }
 }
 
 bool Recorder::wants(const char* field) const {
@@ -285,12 +313,21 @@ nlohmann::json Recorder::figures() const {
   nlohmann::json figures = nlohmann::json::object();
   for (const auto& [name, f] : probe_figures_)
     figures[name] = {{"largest_x", f[0]}, {"largest_y", f[1]}, {"largest_z", f[2]}, {"last_z", f[3]}};
+  if (!impact_.empty()) {
+    const scene::Block& block = *scene_.block;
+    double square = 0.0;
+    for (const double v : block.velocity) square += v * v;
+    figures["block"] = impact_.figures(block_release_, block.mass, -block.velocity[2], 0.5 * block.mass * square, -scene_.gravity[2]);
+    figures["ejecta"] = {{"thrown", std::count(thrown_.begin(), thrown_.end(), 1)}, {"in_flight_at_end", in_flight_}};
+  }
   return figures;
 }
 
 nlohmann::json Recorder::memory() const {
   return {{"energy", energy_.state()}, {"zeroed_grains", zeroed_grains_}, {"zeroed_nodes", zeroed_nodes_}, {"zeroed_probes", zeroed_probes_},
-          {"zero_probes", zero_probes_}, {"next_probe", next_probe_}, {"probe_figures", probe_figures_}};
+          {"zero_probes", zero_probes_}, {"next_probe", next_probe_}, {"probe_figures", probe_figures_},
+          {"impact", impact_.memory()}, {"block_release", block_release_},
+          {"surface_level", surface_level_}, {"thrown", thrown_}};
 }
 
 void Recorder::remember(const nlohmann::json& memory) {
@@ -301,6 +338,10 @@ void Recorder::remember(const nlohmann::json& memory) {
   memory.at("zero_probes").get_to(zero_probes_);
   memory.at("next_probe").get_to(next_probe_);
   memory.at("probe_figures").get_to(probe_figures_);
+  impact_.remember(memory.at("impact"));
+  memory.at("block_release").get_to(block_release_);
+  memory.at("surface_level").get_to(surface_level_);
+  memory.at("thrown").get_to(thrown_);
 }
 
 void Recorder::close() {

@@ -11,6 +11,7 @@
 #include "coupler/results/run_folder.hpp"
 #include "coupler/run/assembly.hpp"
 #include "coupler/run/energy.hpp"
+#include "coupler/run/impact_figures.hpp"
 #include "coupler/run/engine_link.hpp"
 #include "coupler/run/interface_tie.hpp"
 #include "coupler/run/stepper.hpp"
@@ -36,8 +37,15 @@ class Recorder {
   void interface_geometry(const InterfaceTie& tie);
   /// The block's shape, before the first state; where it is goes with each state.
   void block_shape(const PlacedBlock& block);
-  /// A row of block.csv. state: field "block" of the engine.
-  void block_row(double time, const PlacedBlock& block, const std::vector<double>& state);
+  /// A row of block.csv. state: field "block" of the engine; forces: field "block_forces", of which the last steps count.
+  void block_row(double time, const PlacedBlock& block, const std::vector<double>& state, const std::vector<double>& forces,
+                 std::uint64_t steps);
+  /// The block is released at this time, s, on ground whose mean surface lies at level, m.
+  void block_released(double time, double level) {
+    block_release_ = time;
+    surface_level_ = level;
+    thrown_.assign(assembly_.grains.position.size(), 0);
+  }
   /// Step of the last stored state.
   std::uint64_t last_state_step() const { return last_state_step_; }
 
@@ -58,6 +66,7 @@ class Recorder {
   void interface_fields(double dt, EngineLink& continuum, const InterfaceTie& tie, const std::vector<double>& u_grains,
                         const std::vector<double>& u_nodes);
   bool wants(const char* field) const;
+  void count_ejecta(const std::vector<double>& displacement);
 
   RunFolder& folder_;
   const scene::Scene& scene_;
@@ -71,6 +80,11 @@ class Recorder {
   std::vector<double> zeroed_probes_;                        ///< in the order of the columns
   bool zero_probes_ = false;                                 ///< the next sample becomes the zero
   double next_probe_ = 0.0;
+  ImpactFigures impact_;
+  double block_release_ = 0.0;          ///< s
+  double surface_level_ = 0.0;          ///< at the release, m
+  std::vector<std::uint8_t> thrown_;    ///< grains seen above the surface since the release; empty before
+  std::size_t in_flight_ = 0;           ///< of the last state
   std::vector<double> block_vertices_;  ///< present corners, m; before its release where it would touch the grains
   std::map<std::string, std::array<double, 4>> probe_figures_;  ///< largest |component| 3, last z
 };

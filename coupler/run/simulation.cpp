@@ -17,8 +17,9 @@ using Clock = std::chrono::steady_clock;
 constexpr double look_for_rotation = 0.1;
 /// Share of sliding or broken contacts among the tied grains above which the run warns.
 constexpr double tolerable_damage = 0.01;
-/// Steps between two rows of block.csv.
-constexpr std::uint64_t block_row_steps = 10;
+/// Time between two rows of block.csv, s, and the steps between them at most.
+constexpr double block_row_time = 1e-3;
+constexpr double most_block_row_steps = 50;
 
 std::string hex(std::uint64_t value) {
   char text[24];
@@ -82,7 +83,7 @@ void Simulation::prepare() {
   if (!assembly_.has_grains) dem_ = nullptr;
   if (!assembly_.has_mesh) continuum_ = nullptr;
   if (dem_) {
-    const protocol::Ready ready = configure_dem(scene_, assembly_, *dem_);
+    const protocol::Ready ready = configure_dem(scene_, assembly_, *dem_, log_);
     grain_mass_ = ready.mass.data;
     for (std::size_t g = 0; g < grain_mass_.size(); ++g) grain_weights_.push_back(grain_mass_[g] / ready.plain_mass[g]);
   }
@@ -153,7 +154,8 @@ double Simulation::choose_step(const scene::Stage& stage) {
 void Simulation::set_step(double dt) {
   dt_ = dt;
   if (!tie_) return;
-  tie_->set_step(dt, faces_->grain_inertia(grain_mass_, dt), faces_->node_inertia(node_mass_, dt), grain_weights_);
+  const bool absorb = scene_.stages[at_.stage].damping == 0.0;
+  tie_->set_step(dt, faces_->grain_inertia(grain_mass_, dt), faces_->node_inertia(node_mass_, dt), grain_weights_, absorb);
   const InterfaceReport& r = tie_->report();
   log_("interface: " + std::to_string(r.grains) + " grains tied by " + std::to_string(r.rows) + " rows (" + number(r.grains_per_row) +
        " grains a row), rank " + std::to_string(r.rank) + ", condition " + number(r.condition) + ", " + std::to_string(r.merged_rows) + " rows merged");
@@ -216,7 +218,7 @@ void Simulation::run_stage(const scene::Stage& stage) {
   while (taken < most && !rested()) {
     std::uint64_t chunk = std::min<std::uint64_t>(std::max<std::uint64_t>(1, scene_.output.monitor_steps), most - taken);
     if (taken == 0) chunk = 1;  // the stage's own first balance
-    if (block_) chunk = std::min(chunk, block_row_steps);
+    if (block_) chunk = std::min(chunk, static_cast<std::uint64_t>(std::clamp(block_row_time / dt_, 1.0, most_block_row_steps)));
     if (scene_.output.every > 0.0)
       chunk = std::min(chunk, std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil((next_output_ - stepper_->time()) / dt_ - 1e-6))));
     activity_.is("stepping");
@@ -229,7 +231,7 @@ void Simulation::run_stage(const scene::Stage& stage) {
     recorder_->monitor(stage.name, stepper_->step(), stepper_->time(), dt_, last_, progress_.steps_per_second());
     progress_.show(stage.name, stepper_->step(), stepper_->time(), limited ? static_cast<double>(taken) / static_cast<double>(most) : -1.0,
                    unbalanced, recorder_->energy().error());
-    if (block_) recorder_->block_row(stepper_->time(), *block_, dem_->fetch("block"));
+    if (block_) recorder_->block_row(stepper_->time(), *block_, dem_->fetch("block"), dem_->fetch("block_forces"), chunk);
     watch(stage, last_);
     if (scene_.output.every > 0.0 && stepper_->time() >= next_output_ - 0.5 * dt_) {
       recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
@@ -269,6 +271,7 @@ void Simulation::release_block() {
     for (int axis = 0; axis < 3; ++axis) present.position[g][axis] += moved[3 * g + static_cast<std::size_t>(axis)];
   block_ = placed_block(present);
   tell_block();
+  recorder_->block_released(stepper_->time(), block_->surface_level);
   log_("block: lowest corner at " + number(block_->lowest) + " m, mean surface level " + number(block_->surface_level) + " m");
 }
 

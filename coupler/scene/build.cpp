@@ -42,6 +42,11 @@ Material material(const std::string& name, const Json& m) {
           .friction = m["friction"],
           .normal_strength = m["normal_strength"],
           .shear_strength = m["shear_strength"],
+          .rolling_stiffness = m["rolling_stiffness"],
+          .rolling_friction = m["rolling_friction"],
+          .restitution = m["restitution"],
+          .rotates = m["rotation"] == "free",
+          .clump_size = m["clump_size"],
           .young = optional<double>(m, "young"),
           .poisson = optional<double>(m, "poisson"),
           .bulk_density = optional<double>(m, "bulk_density")};
@@ -56,7 +61,7 @@ Ground ground(const Json& g) {
 void set_radius(Grains& grains, const Json& radius) {
   if (radius.is_number()) {
     grains.radius = {radius};
-    if (grains.packing == "random") grains.radius.push_back(radius);
+    if (grains.packing == "random" || grains.packing == "file") grains.radius.push_back(radius);
     return;
   }
   if (radius.contains("uniform")) {
@@ -75,6 +80,8 @@ void set_radius(Grains& grains, const Json& radius) {
 Grains grains(const Json& g, const Json& coupling) {
   Grains result{.zone = {},
                 .packing = g["packing"],
+                .file = g.value("file", ""),
+                .bond_gap = g["bond_gap"],
                 .radius = {},
                 .solid_fraction = g["solid_fraction"],
                 .contacts_per_grain = g["contacts_per_grain"],
@@ -99,7 +106,7 @@ Mesh mesh(const Json& m) {
 double default_reach(const Coupling& coupling, const Grains& grains, const Material* soil) {
   if (coupling.rows == "edge_hats") return 1.25;
   const double whole = coupling.border_weights ? 1.15 : 0.9;
-  if (coupling.rows != "edge" || grains.packing != "random" || !soil || !(soil->shear_stiffness > 0.0)) return whole;
+  if (coupling.rows != "edge" || is_lattice(grains) || !soil || !(soil->shear_stiffness > 0.0)) return whole;
   const double ratio = std::log(soil->shear_stiffness / soil->normal_stiffness);
   return coupling.border_weights ? std::clamp(1.30 + 0.20 * ratio, 0.75, 1.3) : std::clamp(0.885 + 0.085 * ratio, 0.65, 0.9);
 }
@@ -163,6 +170,11 @@ Point direction(const Json& value) {
 
 Face face(const Json& value) {
   if (value.is_string()) return {.kind = value, .history = {}};
+  if (value.contains("wall")) {
+    Face wall{.kind = "wall", .history = {}};
+    wall.friction = value["wall"]["friction"];
+    return wall;
+  }
   const Point along = value.contains("direction") ? direction(value["direction"]) : Point{};
   if (value.contains("pressure")) return {"pressure", history(value["pressure"]), {}};
   if (value.contains("traction")) return {"traction", history(value["traction"]), along};
@@ -255,6 +267,17 @@ Run run(const Json& r) {
           .measure_energy = r["measure_energy"]};
 }
 
+Laboratory laboratory(const Json& l) {
+  return {.confinements = l["confinements"].get<std::vector<double>>(),
+          .axial_strain = l["axial_strain"],
+          .peak_strain = l["peak_strain"],
+          .peak_inertial_number = l["peak_inertial_number"],
+          .inertial_number = l["inertial_number"],
+          .damping = l["damping"],
+          .unbalanced = l["unbalanced"],
+          .max_steps = l["max_steps"]};
+}
+
 }  // namespace
 
 bool InitialMotion::any() const {
@@ -287,6 +310,7 @@ Scene build_scene(Json& v, const std::string& name) {
   for (const Json& probe : v["probes"]) scene.probes.push_back({probe["name"], point(probe["at"])});
   scene.output = output(v["output"]);
   scene.run = run(v["run"]);
+  if (v.contains("laboratory")) scene.laboratory = laboratory(v["laboratory"]);
   return scene;
 }
 

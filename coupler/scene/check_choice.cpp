@@ -86,6 +86,14 @@ void check_materials(Checker& check) {
     };
     endless(material.normal_strength, "normal_strength");
     endless(material.shear_strength, "shear_strength");
+    if (!check.has_grains() || material.clump_size == 1) continue;
+    if (frozen)
+      check.error(path + ".clump_size", "1 while grains.geometry = frozen",
+                  "frozen contacts know no clumps: use geometry = updated");
+    if (check.coupled() && material.name == scene.ground.material)
+      check.error(path + ".clump_size", "1 for the material of the ground in a coupled model",
+                  "grains that share their place with the mesh stay single: put the clumps into a fill of another material, "
+                  "or use model = dem");
   }
 }
 
@@ -154,7 +162,7 @@ void check_gravity(Checker& check) {
       if (!stage.gravity) continue;
       const auto holds = [&](int face) {
         const Face& f = faces[face];
-        return f.kind == "fixed" || ((f.kind == "roller" || f.kind == "seat") && face / 2 == axis) ||
+        return f.kind == "fixed" || (f.kind == "wall" && face / 2 == axis) || ((f.kind == "roller" || f.kind == "seat") && face / 2 == axis) ||
                (f.kind == "velocity" && f.direction[axis] != 0.0);
       };
       bool held = false;

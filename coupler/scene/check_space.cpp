@@ -54,7 +54,7 @@ void check_fills(Checker& check) {
 
 void check_radius(Checker& check) {
   const Grains& grains = check.scene.grains;
-  const bool lattice = grains.packing != "random";
+  const bool lattice = is_lattice(grains);
   const auto& r = grains.radius;
   if (lattice && r.size() != 1) {
     check.error("grains.radius", "one radius for the lattice '" + grains.packing + "'",
@@ -77,7 +77,7 @@ void check_radius(Checker& check) {
 /// The lattice is fitted to the first periodic direction; the others must then hold whole cells too.
 void check_lattice(Checker& check) {
   const Scene& scene = check.scene;
-  if (scene.grains.packing == "random" || scene.grains.radius.size() != 1) return;
+  if (!is_lattice(scene.grains) || scene.grains.radius.size() != 1) return;
   constexpr double largest_change = 0.01;  // of the radius by the fit
   double cell = cell_over_radius(scene.grains.packing) * scene.grains.radius[0];
   bool fitted = false;
@@ -157,7 +157,10 @@ void check_fills_and_mesh(Checker& check) {
                    hi = std::min(scene.fills[i].box.hi[axis], scene.ground.box.hi[axis]);
       reaches = reaches || lo < alone.lo[axis] - slack || hi > alone.hi[axis] + slack;
     }
-    if (reaches)
+    if (reaches && check.has_grains() && scene.material(scene.fills[i].material).clump_size > 1)
+      check.error(item("fills", i) + ".box", "a fill of clumps inside the part where grains stand alone",
+                  "clumps cannot be tied or share their place with the mesh: make the zone larger or the fill smaller");
+    else if (reaches)
       check.warn(item("fills", i) + ".box", "a fill inside the part where grains stand alone",
                  "the mesh has the stiffness of ground.material everywhere: make the zone larger or the fill smaller");
   }

@@ -35,7 +35,7 @@ double cell_over_radius(const std::string& packing) {
 
 double depth_below_centre(const Block& block) {
   const double half = block.side / 2;
-  if (block.tip == "face") return half;
+  if (block.tip == "face" || block.shape == "sphere") return half;
   return half * std::sqrt(block.tip == "edge" ? 2.0 : 3.0);
 }
 
@@ -64,6 +64,10 @@ const Material& Scene::material(const std::string& wanted) const {
 std::string to_string(Model model) {
   static const std::string names[] = {"dem", "continuum", "bridging", "edge"};
   return names[static_cast<int>(model)];
+}
+
+bool is_lattice(const Grains& grains) {
+  return grains.packing == "fcc" || grains.packing == "sc";
 }
 
 double mean_diameter(const Grains& grains) {

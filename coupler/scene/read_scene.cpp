@@ -1,10 +1,14 @@
 #include "coupler/scene/read_scene.hpp"
 
+#include <algorithm>
+
 #include "coupler/scene/build.hpp"
 #include "coupler/scene/checks.hpp"
 #include "coupler/scene/document.hpp"
 #include "coupler/scene/materials.hpp"
+#include "coupler/scene/packing_file.hpp"
 #include "coupler/scene/schema.hpp"
+#include "coupler/scene/units.hpp"
 
 namespace gabion::scene {
 namespace {
@@ -32,10 +36,36 @@ std::string hexadecimal(std::uint64_t number) {
 }
 
 /// A path in the scene counts from the scene's folder; the effective scene, which lies elsewhere, has it whole.
+std::filesystem::path whole_path(const Json& path, const std::filesystem::path& folder) {
+  return std::filesystem::absolute(folder / path.get<std::string>()).lexically_normal();
+}
+
+/// A packing from a file brings its own radii: grains.radius becomes their range.
+void take_packing_file(Json& document, const std::filesystem::path& folder, std::vector<SceneProblem>& problems) {
+  if (!document.is_object() || !document.contains("grains") || !document["grains"].is_object()) return;
+  Json& grains = document["grains"];
+  if (grains.value("packing", Json()) != "file") return;
+  if (!grains.contains("file") || !grains["file"].is_string()) {
+    problems.push_back({"grains.file", "missing", "a file with one grain a row, x y z radius in metres",
+                        "name it relative to the scene's folder, or use packing = random"});
+    return;
+  }
+  const std::filesystem::path path = whole_path(grains["file"], folder);
+  try {
+    const PackingFile packing = read_packing_file(path);
+    const auto [smallest, largest] = std::minmax_element(packing.radius.begin(), packing.radius.end());
+    grains["radius"] = {{"uniform", {format_quantity(*smallest, "m"), format_quantity(*largest, "m")}}};
+    grains["file"] = path.string();
+  } catch (const std::runtime_error& error) {
+    problems.push_back({"grains.file", quoted(grains["file"].get<std::string>()),
+                        "a file with one grain a row, x y z radius in metres", error.what()});
+  }
+}
+
 void resolve_paths(Json& values, const std::filesystem::path& folder, std::vector<SceneProblem>& problems) {
   if (!values["initial"].contains("state")) return;
   Json& path = values["initial"]["state"];
-  const std::filesystem::path resolved = std::filesystem::absolute(folder / path.get<std::string>()).lexically_normal();
+  const std::filesystem::path resolved = whole_path(path, folder);
   std::error_code error;
   if (!std::filesystem::is_regular_file(resolved, error))
     problems.push_back({"initial.state", quoted(path.get<std::string>()), "the results.h5 of an earlier run",
@@ -59,6 +89,8 @@ ReadResult read_scene_text(const std::string& text, const std::string& label, co
   Json document = parse_document(text, problems);
   stop_at(label, problems);
   for (const std::string& override_text : overrides) apply_override(document, override_text, problems);
+  stop_at(label, problems);
+  take_packing_file(document, folder, problems);
   stop_at(label, problems);
 
   read_by_schema(document, problems);

@@ -38,6 +38,11 @@ struct Material {
   double friction = infinity;         ///< Coulomb coefficient
   double normal_strength = infinity;  ///< N/m2, over min(r1,r2)^2
   double shear_strength = infinity;   ///< N/m2
+  double rolling_stiffness = 0.0;     ///< k_r over k_s r1 r2
+  double rolling_friction = 0.0;      ///< largest rolling moment over min(r1,r2) times the normal force
+  double restitution = 1.0;
+  bool rotates = true;
+  int clump_size = 1;                 ///< grains joined to one rigid clump; 1: single spheres
   // continuum; absent: measured on the packing
   std::optional<double> young;         ///< Pa
   std::optional<double> poisson;       ///< -
@@ -57,7 +62,9 @@ struct Ground {
 
 struct Grains {
   std::optional<Box> zone;              ///< absent: the whole ground
-  std::string packing = "random";       ///< random, fcc, sc
+  std::string packing = "random";       ///< random, fcc, sc, file
+  std::string file;                     ///< of the packing; empty: none
+  double bond_gap = 0.0;                ///< packing from a file: largest gap of a bond over the sum of the radii
   std::string radius_kind = "uniform";  ///< uniform, sieve
   /// m; uniform: smallest and largest; lattice: one value; sieve: radius, share, radius, share ... (shares of the
   /// mass, summing to 1)
@@ -96,16 +103,17 @@ struct Coupling {
 
 /// What holds or drives one face of the ground, in both media.
 struct Face {
-  std::string kind = "free";  ///< free, fixed, roller, seat, absorbing, pressure, traction, velocity
+  std::string kind = "free";  ///< free, fixed, roller, seat, absorbing, wall, pressure, traction, velocity
   History history;            ///< pressure Pa (compression positive), traction Pa, velocity m/s
   Point direction{};          ///< traction and velocity: unit vector; velocity: only its nonzero components are held
+  double friction = 0.0;      ///< wall: Coulomb coefficient
 };
 /// Order: xmin, xmax, ymin, ymax, zmin, zmax.
 using Faces = std::array<Face, 6>;
 
 struct Block {
-  std::string shape = "cube";
-  double side = 0.0;         ///< m
+  std::string shape = "cube";  ///< cube, sphere
+  double side = 0.0;         ///< m, edge or diameter
   double mass = 0.0;         ///< kg
   std::string tip = "down";  ///< down (corner), edge, face
   Point position{};          ///< centre in x, y; z is set so that the block touches the ground
@@ -179,6 +187,18 @@ struct Run {
   bool measure_energy = true;
 };
 
+/// Triaxial tests of the ground as a periodic sample.
+struct Laboratory {
+  std::vector<double> confinements;  ///< Pa
+  double axial_strain = 0.1;
+  double peak_strain = 0.002;  ///< slow and finely recorded up to here
+  double peak_inertial_number = 1e-4;
+  double inertial_number = 5e-4;
+  double damping = 0.2;      ///< local, while shearing
+  double unbalanced = 1e-3;  ///< at rest when confined
+  std::uint64_t max_steps = 200'000;
+};
+
 struct Scene {
   std::string title;
   std::string name;  ///< file name without folder and ending
@@ -198,6 +218,7 @@ struct Scene {
   std::vector<Probe> probes;
   Output output;
   Run run;
+  std::optional<Laboratory> laboratory;
 
   /// Throws std::out_of_range; cannot happen for names that ground and fills use.
   const Material& material(const std::string& wanted) const;
@@ -205,6 +226,9 @@ struct Scene {
 
 /// "dem", "continuum", "bridging", "edge"
 std::string to_string(Model model);
+
+/// Whether the packing is one of the lattices.
+bool is_lattice(const Grains& grains);
 
 /// Mean diameter of the grains by number, m.
 double mean_diameter(const Grains& grains);

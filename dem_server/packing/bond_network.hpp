@@ -25,6 +25,7 @@ struct BondNetwork {
   std::vector<double> radii;    ///< m
   std::vector<double> density;  ///< of each grain, kg/m3; empty counts as 1
   std::vector<Bond> bonds;
+  std::vector<std::uint8_t> locked = {};  ///< 1 where a grain does not rotate; empty: all do
 
   std::size_t size() const { return centres.size(); }
   double contacts_per_grain() const;

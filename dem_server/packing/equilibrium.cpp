@@ -52,7 +52,7 @@ void Equilibrium::factor_blocks() {
     const Eigen::Matrix3d stiffness = s.k_s * Eigen::Matrix3d::Identity() + (s.k_n - s.k_s) * n * n.transpose();
     const auto add = [&](std::int32_t grain, double side, double a) {
       Eigen::Matrix<double, 3, 6> b;
-      b << side * Eigen::Matrix3d::Identity(), cross_matrix(a, s.normal);
+      b << side * Eigen::Matrix3d::Identity(), cross_matrix(turns(grain) ? a : 0.0, s.normal);
       blocks[grain] += b.transpose() * stiffness * b;
     };
     add(s.i, -1.0, s.a_i);
@@ -93,12 +93,10 @@ void Equilibrium::settle(GrainMotion& field) const {
     for (std::size_t g = 0; g < fixed_.size(); ++g) mean += field[2 * g];
     mean /= splat(static_cast<double>(fixed_.size()));
     for (std::size_t g = 0; g < fixed_.size(); ++g) field[2 * g] -= mean;
-    return;
   }
   for (std::size_t g = 0; g < fixed_.size(); ++g) {
-    if (fixed_[g] == 0) continue;
     field[2 * g] *= free_components(g);
-    if (fixed_[g] & rotations_fixed) field[2 * g + 1] = Vec{};
+    if ((fixed_[g] & rotations_fixed) || !turns(g)) field[2 * g + 1] = Vec{};
   }
 }
 

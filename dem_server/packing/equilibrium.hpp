@@ -72,6 +72,8 @@ class Equilibrium {
 
   const BondNetwork& network_;
   std::vector<std::uint8_t> fixed_;
+  bool turns(std::size_t grain) const { return network_.locked.empty() || !network_.locked[grain]; }
+
   VecField beyond_;
   bool floating_ = true;
   double mean_radius_ = 0.0;

@@ -15,7 +15,7 @@ COMMANDS = {
     "verify": "compare with closed forms and references, figure by figure",
     "plot": "draw the plots of a run folder again",
     "report": "write the report of a run folder again",
-    "calibrate": "find the contact stiffnesses that give a wanted modulus and Poisson's ratio",
+    "calibrate": "test a material on periodic samples, or find parameters that give wanted figures",
     "pack": "make the packing of a scene and show it",
     "doctor": "say what is installed, built and missing",
 }

@@ -124,8 +124,8 @@ def block(run):
             top.set_ylabel(label(column))
         elif name == "force_filtered":
             below.plot(time, values, "#d62728", linewidth=1.5, label="vertical, mean over 4 ms", zorder=3)
-        elif name.startswith("force") and name.endswith("z"):
-            below.plot(time, values, "0.6", linewidth=0.8, label="vertical, raw")
+        elif name == "force_largest.z":
+            below.plot(time, values, "0.6", linewidth=0.8, label="vertical, largest of each ms")
     top.set_title(title(run, "Block: penetration and force"))
     below.set(xlabel="time [s]", ylabel="force [N]")
     below.legend()

@@ -3,11 +3,11 @@
 import sys
 from pathlib import Path
 
-from gabion_tools import history_plots, section_plot
+from gabion_tools import crater_plot, history_plots, section_plot
 from gabion_tools.run_data import Run
 
 PLOTS = [history_plots.energy, history_plots.probes, history_plots.stress_strain, history_plots.block,
-         history_plots.reactions, history_plots.convergence, section_plot.section, section_plot.interface]
+         history_plots.reactions, history_plots.convergence, section_plot.section, crater_plot.crater, section_plot.interface]
 
 
 def draw(folder, plane=None):

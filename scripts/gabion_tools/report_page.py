@@ -15,7 +15,7 @@ img{max-width:100%}pre{background:#f6f6f6;padding:.8em;overflow:auto;font-size:1
 .warning{background:#fff3d6;border-left:4px solid #e0a000;padding:.4em .8em;margin:.4em 0}"""
 
 CAPTIONS = {"energy": "Energies", "probes": "Probes", "stress": "Stress and strain", "block": "Block",
-            "reactions": "Reactions", "monitor": "Convergence", "section": "Section", "interface": "Interface"}
+            "reactions": "Reactions", "monitor": "Convergence", "section": "Section", "crater": "Crater", "interface": "Interface"}
 LOG_LINES = 60
 
 

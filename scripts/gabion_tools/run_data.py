@@ -47,20 +47,19 @@ def joined(tables):
 FORCE_WINDOW = 4e-3  # s; the force on a block is always given with this centred mean beside it
 
 
-def centred_mean(time, values, window=FORCE_WINDOW):
-    """Mean over a window round each time, shorter at both ends; for samples close beside the window."""
-    integral = np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(time))])
+def centred_mean(time, mean, window=FORCE_WINDOW):
+    """Mean over a window round each time, shorter at both ends; mean: of the interval that ends at each time."""
+    integral = np.concatenate([[0.0], np.cumsum(mean[1:] * np.diff(time))])
     low, high = (np.clip(time + side * window / 2, time[0], time[-1]) for side in (-1, 1))
-    span = high - low
-    change = np.interp(high, time, integral) - np.interp(low, time, integral)
-    return np.where(span > 0, change / np.where(span > 0, span, 1), values)
+    span, change = high - low, np.interp(high, time, integral) - np.interp(low, time, integral)
+    return np.where(span > 0, change / np.where(span > 0, span, 1), mean)
 
 
 def with_filtered_force(table):
-    """A block's history with the filtered vertical force, where the coupler has not written one."""
-    if "force_filtered [N]" in table or "force.z [N]" not in table or len(table["force.z [N]"]) == 0:
+    """A block's history with the filtered vertical force."""
+    if "force_filtered [N]" in table or "force_mean.z [N]" not in table or len(table["time [s]"]) == 0:
         return table
-    return {**table, "force_filtered [N]": centred_mean(table["time [s]"], table["force.z [N]"])}
+    return {**table, "force_filtered [N]": centred_mean(table["time [s]"], table["force_mean.z [N]"])}
 
 
 class Run:

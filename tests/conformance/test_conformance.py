@@ -7,7 +7,7 @@ import math
 import unittest
 
 import models
-from engine_process import EngineTest
+from engine_process import TOKEN, EngineTest
 from run_cases import RunCases
 from session_cases import SessionCases
 
@@ -40,6 +40,30 @@ class DemServer(SessionCases, RunCases, EngineTest):
         half = math.asin(omega * self.dt / 2)
         self.assertAlmostEqual(period / (math.pi * self.dt / half), 1.0, 4)
 
+    def test_two_clumps_vibrate_as_bodies(self):
+        client = self.greeted()
+        models.set_up_chain(client, 4)
+        client.ask("CONTACT_OPTIONS", geometry="updated", rotations=1, skin=0.0)
+        self.assertEqual(client.ask("CLUMPS", clump_size=[2], gap=1e-6),
+                         {"clumps": 2, "grains": 4, "aspect_ratio": 2.0})
+        self.assertEqual(client.ask("BONDS", gap=1e-6)["bonds"], 1)
+        self.ready = client.ask("PREPARE")
+        self.assertEqual(list(client.ask("FETCH", field="clump")["values"].values), [0, 0, 1, 1])
+        # one spring between two bodies of twice the mass: omega^2 = k/m; their members move alike
+        omega = math.sqrt(models.BOND_STIFFNESS / models.GRAIN_MASS)
+        dt = 0.01 * 2.0 / omega
+        client.ask("SET_FIELD", field="velocity", values=[[1e-3, 0, 0]] * 2 + [[-1e-3, 0, 0]] * 2)
+        steps = 100
+        client.run(steps, dt)
+        u = [row[0] for row in client.ask("FETCH", field="displacement")["values"].rows()]
+        self.assertEqual((u[0], u[2]), (u[1], u[3]))
+        self.assertAlmostEqual(u[0] / (1e-3 / omega * math.sin(omega * steps * dt)), 1.0, 2)
+        error = self.refusal(client.ask, "CLUMPS", clump_size=[0], gap=1e-6)
+        self.assertEqual((error.code, error.where), ("value", "CLUMPS clump_size"))
+        client.ask("CLUMPS", clump_size=[2], gap=1e-6, single=[0, 1])
+        client.ask("PREPARE")
+        self.assertEqual(list(client.ask("FETCH", field="clump")["values"].values), [-1, -1, 0, 0])
+
     def test_the_face_that_a_chain_is_held_at(self):
         """Grains held half a metre inside the face: a rod would have to be held there."""
         count, inside = 14, 0.5
@@ -55,6 +79,26 @@ class DemServer(SessionCases, RunCases, EngineTest):
                                                  components=6, **window)))
         self.assertIn("face 6", str(self.refusal(client.ask, "MEASURE_FACE", face=6, entities=[0], components=1,
                                                  **window)))
+
+    def test_a_triaxial_test_of_a_lattice(self):
+        self.launch()
+        client = self.connect()
+        if "triaxial" not in client.hello(TOKEN)["capabilities"]:
+            self.skipTest("the engine does no triaxial tests")
+        models.set_up_lattice(client)
+        self.refusal(client.ask, "TRIAXIAL_SHEAR", axial_strain=0.1, record_every=0.1, inertial_number=1e-3, damping=0.2)
+        pressure = 1e-6 * models.STIFFNESS
+        confined = client.ask("TRIAXIAL_CONFINE", pressure=pressure, axis=2, damping=0.7, unbalanced=1e-3,
+                              max_steps=100000, step_fraction=0.7)
+        # a simple cubic lattice: C11 = k_n/(2 R), C12 = 0, k_n of two equal grains in series
+        modulus = models.BOND_STIFFNESS / (2 * models.RADIUS)
+        for side in confined["box"].values:
+            self.assertAlmostEqual((1.0 - side / models.LATTICE_SIDE) * modulus / pressure, 1.0, 2)
+        curve = client.ask("TRIAXIAL_SHEAR", axial_strain=2e-6, record_every=1e-6, inertial_number=1e-3, damping=0.2)
+        strain, stress = (list(curve[name].values) for name in ("axial_strain", "axial_stress"))
+        self.assertEqual(len(strain), 2)
+        self.assertAlmostEqual((stress[1] - stress[0]) / (strain[1] - strain[0]) / modulus, 1.0, 2)
+        self.assertEqual(self.refusal(client.ask, "CHECKPOINT").code, "value")
 
 
 class ContinuumServer(SessionCases, RunCases, EngineTest):

@@ -53,7 +53,8 @@ struct Scene {
     engine.set_field(field, flat);
   }
   double energy(const std::string& name) const {
-    for (const auto& entry : engine.ledger().entries)
+    const engine::Ledger ledger = engine.ledger();  // outlives the loop over a part of it
+    for (const auto& entry : ledger.entries)
       if (entry.name == name) return entry.energy;
     throw std::out_of_range("no energy " + name);
   }

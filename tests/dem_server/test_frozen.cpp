@@ -160,7 +160,8 @@ TEST_CASE("energy with gravity, loads, dashpots, damping, constraints closes") {
   double largest = 0.0;
   for (int k = 0; k < 20; ++k) {
     scene.step(dt, 20, 0.2);
-    for (const auto& entry : scene.engine.ledger().entries) largest = std::max(largest, std::fabs(entry.energy));
+    const auto ledger = scene.engine.ledger();
+    for (const auto& entry : ledger.entries) largest = std::max(largest, std::fabs(entry.energy));
     CHECK(std::fabs(scene.engine.ledger().balance() - before) < 1e-11 * largest);
   }
   for (const char* name : {"damping", "dashpots", "loads", "constraints"})

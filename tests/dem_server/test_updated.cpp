@@ -230,7 +230,8 @@ TEST_CASE("walls press, rub and move, and the balance closes") {
   scene.step(dt, 1500);
   CHECK(scene.count("surface_contacts") == 2);
   double largest = 0.0;
-  for (const auto& entry : scene.engine.ledger().entries) largest = std::max(largest, std::fabs(entry.energy));
+  const auto ledger = scene.engine.ledger();
+  for (const auto& entry : ledger.entries) largest = std::max(largest, std::fabs(entry.energy));
   CHECK(std::fabs(scene.energy("walls")) > 0.1 * largest);
   CHECK(scene.energy("friction") > 0.0);
   CHECK(std::fabs(scene.engine.ledger().balance() - before) < 2e-3 * largest);

@@ -16,7 +16,7 @@ class PlotsTest(LauncherTest):
         made, failed = plots.draw(self.folder / "a")
         self.assertEqual(failed, [])
         self.assertEqual({path.stem for path in made},
-                         {"energy", "probes", "block", "reactions", "monitor", "section", "interface"})
+                         {"energy", "probes", "block", "reactions", "monitor", "section", "crater", "interface"})
 
     def test_a_broken_file_costs_one_plot(self):
         sample_run.write(self.folder / "a")
@@ -47,10 +47,11 @@ class PlotsTest(LauncherTest):
 
     def test_the_filtered_force_is_a_centred_mean(self):
         time = np.linspace(0, 0.1, 1001)
-        wave = run_data.centred_mean(time, np.sin(2 * np.pi * time / 0.004), 0.004)
+        middles = time - 0.5 * (time[1] - time[0])  # of the intervals that end at the times
+        wave = run_data.centred_mean(time, np.sin(2 * np.pi * middles / 0.004), 0.004)
         self.assertLess(np.abs(wave[20:-20]).max(), 1e-3)
-        np.testing.assert_allclose(run_data.centred_mean(time, 3 * time)[20:-20], 3 * time[20:-20], atol=1e-4)
-        table = run_data.with_filtered_force({"time [s]": time, "force.z [N]": np.full(1001, 7.0)})
+        np.testing.assert_allclose(run_data.centred_mean(time, 3 * middles)[20:-20], 3 * time[20:-20], atol=1e-4)
+        table = run_data.with_filtered_force({"time [s]": time, "force_mean.z [N]": np.full(1001, 7.0)})
         np.testing.assert_allclose(table["force_filtered [N]"], 7.0)
 
     def test_a_plane_cuts_a_cube_in_a_square(self):

@@ -115,6 +115,29 @@ TEST_CASE("periodic packing: relaxed stiffness lies below the affine (Voigt) one
   CHECK(result.isotropic.poisson == Approx(0.228).margin(0.02));
 }
 
+TEST_CASE("grains that do not rotate make a packing stiffer, as far as the affine one") {
+  PackingRequest request;
+  const Packing packing = random_packing(true, 500, request);
+  BondNetwork network =
+      make_bond_network(packing.position, packing.radius, request.box, packing.gap, {{3.78e9}, {1.13e9}});
+  const Window whole{request.box.lo, request.box.hi};
+  const Homogenised turning = homogenise(network, request.box, whole);
+  network.locked.assign(network.size(), 1);
+  const Homogenised locked = homogenise(network, request.box, whole);
+  const Equilibrium equilibrium(network, {});
+  LoadCases still, relaxed;
+  for (GrainMotion& motion : still.motion) motion.assign(2 * network.size(), Vec{});
+  solve_load_cases(equilibrium, {}, relaxed);
+  for (std::size_t g = 0; g < network.size(); ++g) CHECK(norm(relaxed.motion[3][2 * g + 1]) == 0.0);
+  const Homogenised affine = measure(equilibrium, still, request.box, whole);
+  const Eigen::SelfAdjointEigenSolver<Stiffness> above(locked.stiffness - turning.stiffness);
+  const Eigen::SelfAdjointEigenSolver<Stiffness> below(affine.stiffness - locked.stiffness);
+  CHECK(above.eigenvalues()[0] > 0.0);
+  CHECK(below.eigenvalues()[0] > 0.0);
+  CHECK(locked.isotropic.young > 1.02 * turning.isotropic.young);
+  CHECK(locked.residual < 1e-8);
+}
+
 TEST_CASE("without shear stiffness a packing with fewer than six contacts is a mechanism (Maxwell's count)") {
   PackingRequest request;
   request.contacts_per_grain = 5.5;

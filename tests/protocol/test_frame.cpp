@@ -45,9 +45,9 @@ TEST_CASE("a frame says what was put into it") {
 TEST_CASE("the bytes of a frame are those of the worked example in PROTOCOL.md") {
   // BYE, frame number 7, step 0; the checksum was computed with Python's zlib.
   const HeaderBytes header = encode_header({.type = 6, .sequence = 7, .step = 0}, {});
-  const unsigned char expected[] = {0x47, 0x41, 0x42, 0x4e, 0x01, 0x00, 0x06, 0x00, 0,    0,    0,    0,
+  const unsigned char expected[] = {0x47, 0x41, 0x42, 0x4e, 0x02, 0x00, 0x06, 0x00, 0,    0,    0,    0,
                                     0,    0,    0,    0,    0x07, 0,    0,    0,    0,    0,    0,    0,
-                                    0,    0,    0,    0,    0,    0,    0,    0,    0xbb, 0xd8, 0xe3, 0x63};
+                                    0,    0,    0,    0,    0,    0,    0,    0,    0x04, 0xd0, 0xfc, 0xaa};
   CHECK(std::memcmp(header.data(), expected, sizeof expected) == 0);
 }
 
@@ -76,7 +76,7 @@ TEST_CASE("another version, another protocol and an oversized payload have their
   std::vector<std::byte> bytes = frame_of({});
   bytes[4] = std::byte{9};
   CHECK_THROWS_AS(read(bytes), VersionError);
-  CHECK_THROWS_WITH(read(bytes), "the other side speaks version 9 of the protocol, this one 1");
+  CHECK_THROWS_WITH(read(bytes), "the other side speaks version 9 of the protocol, this one 2");
   bytes = frame_of({});
   std::memcpy(bytes.data(), "HTTP", 4);
   CHECK_THROWS_WITH(read(bytes), Catch::Contains("do not start with GABN"));

@@ -43,7 +43,7 @@ void check_mistakes(const std::string& scene, const std::vector<Mistake>& mistak
 
 TEST_CASE("unknown, missing and mistyped keys") {
   check_mistakes("tiny.json", {
-      {{"grains.radios=1"}, "grains.radios", "unknown key; did you mean 'radius'? known here: contacts_per_grain, geometry,"},
+      {{"grains.radios=1"}, "grains.radios", "unknown key; did you mean 'radius'? known here: bond_gap, contacts_per_grain,"},
       {{"mash={}"}, "mash", "did you mean 'mesh'?"},
       {{"colour=red"}, "colour", "unknown key; known here: block, coupling"},
       {{"stages[0].dampng=0.1"}, "stages[0].dampng", "did you mean 'damping'?"},
@@ -68,6 +68,16 @@ TEST_CASE("unknown, missing and mistyped keys") {
       {{"run.measure_energy=maybe"}, "run.measure_energy", "'maybe', expected true or false"},
       {{"faces.zmin=5"}, "faces.zmin", "5, expected one of free, fixed, roller, seat, absorbing, or an object with pressure"},
       {{"gabion=2"}, "gabion", "2, expected 1"},
+  });
+}
+
+TEST_CASE("packings from files") {
+  check_mistakes("rigid_box.json", {
+      {{"grains.file=data/rigid_bx.txt"}, "grains.file", "there is no file"},
+      {{"grains.file=null"}, "grains.file", "missing, expected a file with one grain a row"},
+      {{"grains.file=rigid_box.json"}, "grains.file", "is not four numbers x y z radius"},
+      {{"grains.bond_gap=-0.1"}, "grains.bond_gap", "expected at least 0"},
+      {{"faces.xmin={\"wall\": {}}"}, "faces.xmin.wall.friction", "missing"},
   });
 }
 
@@ -128,7 +138,15 @@ TEST_CASE("values out of range") {
       {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"friction\": -0.5}}"}, "materials.seed_soil.friction", "expected at least 0; 0: frictionless"},
       {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"normal_strength\": \"-1 Pa\"}}"}, "materials.seed_soil.normal_strength", "0: no bonds"},
       {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"poisson\": 0.5}}"}, "materials.seed_soil.poisson", "0.4999 is accepted"},
+      {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"restitution\": 0}}"}, "materials.seed_soil.restitution", "expected above 0 and at most 1; 1: no contact damping"},
+      {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"restitution\": 1.5}}"}, "materials.seed_soil.restitution", "1.5, expected above 0 and at most 1"},
+      {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"rolling_stiffness\": -1}}"}, "materials.seed_soil.rolling_stiffness", "expected at least 0"},
+      {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"rolling_friction\": \"-0.1\"}}"}, "materials.seed_soil.rolling_friction", "rolling resistance needs rolling_stiffness too"},
+      {{"materials={\"seed_soil\": {\"normal_stiffness\": \"1 GPa\", \"shear_stiffness\": \"1 GPa\", \"rotation\": \"lockd\"}}"}, "materials.seed_soil.rotation", "did you mean 'locked'"},
       {{"run.threads=0"}, "run.threads", "at least 1"},
+      {{"laboratory={}"}, "laboratory.confinements", "confinements"},
+      {{"laboratory={\"confinements\": [\"0 kPa\"]}"}, "laboratory.confinements[0]", "above 0 Pa"},
+      {{"laboratory={\"confinements\": [], \"damping\": 1}"}, "laboratory.damping", "0.2 to 0.7"},
   });
   check_mistakes("impact.json", {
       {{"block.mass=0 t"}, "block.mass", "'0 t', expected above 0 kg"},
@@ -230,6 +248,18 @@ TEST_CASE("several problems are told at once") {
   } catch (const SceneError& error) {
     CHECK(error.problems().size() == 4);
   }
+}
+
+TEST_CASE("clumps where they cannot be") {
+  check_mistakes("tiny_clumps.json", {
+      {{"materials.cushion.clump_size=0"}, "materials.cushion.clump_size", "expected at least 1"},
+      {{"grains.geometry=frozen"}, "materials.cushion.clump_size", "1 while grains.geometry = frozen"},
+      {{"ground.material=cushion"}, "materials.cushion.clump_size", "1 for the material of the ground in a coupled model"},
+      {{"fills[0].box[0][2]=1.5 m"}, "fills[0].box", "clumps cannot be tied"},
+      {{"model=edge", "fills[0].box[0][2]=1 m"}, "fills[0].box", "clumps cannot be tied"},
+  });
+  CHECK(read_scene(scenarios() / "tiny_clumps.json", {"model=dem", "fills[0].box[0][2]=0 m"}).scene.materials.size() == 2);
+  CHECK(read_scene(scenarios() / "tiny_clumps.json", {}).scene.material("cushion").clump_size == 4);
 }
 
 TEST_CASE("warnings do not stop") {

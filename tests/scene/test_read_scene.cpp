@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "coupler/scene/packing_file.hpp"
 #include "coupler/scene/read_scene.hpp"
 #include "coupler/scene/schema.hpp"
 #include "tests/scene/scene_files.hpp"
@@ -13,7 +15,8 @@ using namespace gabion::scene;
 namespace {
 
 std::vector<std::string> models_of(const std::filesystem::path& file) {
-  if (file.stem() == "impact") return {"dem", "bridging", "edge"};
+  if (file.stem() == "impact" || file.stem() == "tiny_clumps") return {"dem", "bridging", "edge"};
+  if (file.stem() == "rigid_box") return {"dem"};
   return {"dem", "continuum", "bridging", "edge"};
 }
 
@@ -113,6 +116,17 @@ TEST_CASE("materials come from the scene, a file beside it, or the program") {
   CHECK(read.scene.material("seed_soil").normal_strength == infinity);
   CHECK(read.scene.material("seed_soil").density == 2650);
   CHECK_FALSE(read.scene.material("seed_soil").young);
+  CHECK(read.scene.material("seed_soil").rolling_stiffness == 0.0);
+  CHECK(read.scene.material("seed_soil").rolling_friction == 0.0);
+  CHECK(read.scene.material("seed_soil").restitution == 1.0);
+  CHECK(read.scene.material("seed_soil").rotates);
+  const Material lossy = tiny({R"(materials={"seed_soil": {"normal_stiffness": "1 GPa", "shear_stiffness": "0.2 GPa",
+      "rolling_stiffness": 0.5, "rolling_friction": "infinite", "restitution": 0.3, "rotation": "locked"}})"})
+                             .scene.material("seed_soil");
+  CHECK(lossy.rolling_stiffness == 0.5);
+  CHECK(lossy.rolling_friction == infinity);
+  CHECK(lossy.restitution == 0.3);
+  CHECK_FALSE(lossy.rotates);
   CHECK_THROWS_AS(read.scene.material("clay"), std::out_of_range);
 
   const auto folder = std::filesystem::path(GABION_BINARY_DIR) / "scene_materials";
@@ -215,6 +229,23 @@ TEST_CASE("grain sizes in three forms") {
   CHECK(lattice.geometry == "frozen");
 }
 
+TEST_CASE("grains from a file bring their radii, and walls their friction") {
+  const ReadResult read = read_scene(scenarios() / "rigid_box.json");
+  const Grains& grains = read.scene.grains;
+  CHECK(grains.packing == "file");
+  const PackingFile file = read_packing_file(grains.file);
+  CHECK(file.radius.size() == 7033);
+  CHECK(grains.radius.front() == Approx(*std::min_element(file.radius.begin(), file.radius.end())).epsilon(1e-9));
+  CHECK(grains.radius.back() == Approx(*std::max_element(file.radius.begin(), file.radius.end())).epsilon(1e-9));
+  CHECK(read.scene.faces[4].kind == "wall");
+  CHECK(read.scene.faces[4].friction == 1.0);
+  CHECK(read.scene.faces[5].kind == "free");
+  // the effective scene names the file whole, so that it can be read from elsewhere
+  const ReadResult again = read_scene_text(read.effective, "again.json", "/", {});
+  CHECK(again.scene.grains.file == grains.file);
+  CHECK(again.hash == read.hash);
+}
+
 TEST_CASE("the block is placed, pointed and released") {
   const Scene scene = read_scene(scenarios() / "impact.json").scene;
   REQUIRE(scene.block);
@@ -259,6 +290,16 @@ TEST_CASE("the rest of the keys arrive") {
   CHECK(wave.wave->wavelength == 2.4);
   CHECK(wave.ground.periodic == std::array<bool, 3>{true, true, false});
   CHECK(wave.coupling.sponge.strength == 25.6);
+}
+
+TEST_CASE("laboratory tests arrive, and a scene without them has none") {
+  CHECK_FALSE(tiny().scene.laboratory);
+  const Scene scene = tiny({"laboratory={\"confinements\": [\"20 kPa\", \"1 bar\"], \"damping\": 0.5}"}).scene;
+  REQUIRE(scene.laboratory);
+  CHECK(scene.laboratory->confinements == std::vector<double>{20e3, 100e3});
+  CHECK(scene.laboratory->damping == 0.5);
+  CHECK(scene.laboratory->axial_strain == 0.1);
+  CHECK(scene.laboratory->max_steps == 200000);
 }
 
 TEST_CASE("a file that cannot be read is named") {

@@ -17,11 +17,16 @@ BLOCK = {"side": "0.3 m", "mass": "40 kg", "velocity": "2 m/s", "position": ["0.
 CHANGES = ["gravity=[\"0\", \"0\", \"-9.81 m/s2\"]", "faces.zmax=free", f"stages={json.dumps(STAGES)}",
            "output={\"monitor_steps\": 50, \"every\": \"2 ms\"}", "run.checkpoint_every=0.05 s", "run.energy_tolerance=1"]
 
+WEAK = {"normal_stiffness": "3.78e9 N/m2", "shear_stiffness": "1.13e9 N/m2", "friction": 0.4, "rolling_stiffness": 0.5,
+        "normal_strength": "1e4 N/m2", "shear_strength": "1e4 N/m2", "rolling_friction": 0.1, "restitution": 0.5}
+
 
 class Resume(SystemTest):
+    material = []
+
     def changes(self, model):
         block = [f"block={json.dumps(BLOCK)}"] if model == "dem" else []  # the tiny zone's top is the mesh's in the others
-        return [*CHANGES, f"model={model}", *block]
+        return [*CHANGES, f"model={model}", *block, *self.material]
 
     def kill_one(self, model):
         """A run killed in its second stage, at some time after a checkpoint; its folder."""
@@ -61,6 +66,10 @@ class Resume(SystemTest):
         self.check("edge")
 
     def test_grains_alone_with_a_block(self):
+        self.check("dem")
+
+    def test_grains_that_break_roll_and_bounce(self):
+        self.material = [f"materials={json.dumps({'weak': WEAK})}", "ground.material=weak"]
         self.check("dem")
 
     def test_an_interrupted_run_says_where_to_go_on(self):
