@@ -270,12 +270,11 @@ protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, Eng
 protocol::Ready configure_continuum(const scene::Scene& scene, const Assembly& assembly, EngineLink& continuum) {
   continuum.tell(options_of(scene));
   protocol::SolidMaterials materials;
-  const std::vector<double>& factors = assembly.layers.factor;
-  for (const double factor : factors)
-    for (const auto& row : assembly.elasticity.stiffness)
-      for (const double c : row) materials.stiffness.data.push_back(factor * c);
-  materials.stiffness.set_shape(std::array<std::uint64_t, 3>{factors.size(), 6, 6});
-  materials.density = std::vector<double>(factors.size(), assembly.elasticity.density);
+  for (const auto& share : assembly.layers.share)
+    for (const auto& row : layer_stiffness(assembly.elasticity.stiffness, share))
+      materials.stiffness.data.insert(materials.stiffness.data.end(), row.begin(), row.end());
+  materials.stiffness.set_shape(std::array<std::uint64_t, 3>{assembly.layers.share.size(), 6, 6});
+  materials.density = std::vector<double>(assembly.layers.share.size(), assembly.elasticity.density);
   continuum.tell(materials);
   protocol::Mesh mesh;
   mesh.nodes = flatten(assembly.mesh.nodes);

@@ -1,3 +1,4 @@
+#include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
 #include "coupler/ground/face_layers.hpp"
@@ -16,8 +17,8 @@ const Ground& ground() {
   return g;
 }
 
-double factor_of(const FaceLayers& layers, std::size_t element) {
-  return layers.factor[static_cast<std::size_t>(layers.material[element])];
+std::array<double, 3> share_of(const FaceLayers& layers, std::size_t element) {
+  return layers.share[static_cast<std::size_t>(layers.material[element])];
 }
 
 /// What a column of elements through a point gives way under unit stress and modulus.
@@ -29,7 +30,7 @@ double compliance(const FaceLayers& layers, double x, double y, double from, dou
     const auto& z = mesh.grid.lines(2);
     const auto k = static_cast<std::size_t>(mesh.cells[e][2]);
     const bool here = mesh.grid.locate({x, y, centre[2]}) == mesh.cells[e] && z[k] >= from - 1e-9 && z[k + 1] <= to + 1e-9;
-    if (here) total += (z[k + 1] - z[k]) / factor_of(layers, e);
+    if (here) total += (z[k + 1] - z[k]) * share_of(layers, e)[2];
   }
   return total;
 }
@@ -38,7 +39,7 @@ double compliance(const FaceLayers& layers, double x, double y, double from, dou
 
 TEST_CASE("no offset leaves the mesh as it is", "[face_layers]") {
   const FaceLayers layers = face_layers(ground().mesh, {});
-  CHECK(layers.factor == std::vector<double>{1.0});
+  CHECK(layers.share == std::vector<std::array<double, 3>>{{1, 1, 1}});
   CHECK(layers.material == std::vector<std::int32_t>(ground().mesh.elements.size(), 0));
 }
 
@@ -46,9 +47,9 @@ TEST_CASE("a held face shortens or lengthens the mesh by its offset", "[face_lay
   for (const double offset : {0.3, 0.9, -0.4, 1e-6}) {
     const FaceLayers layers = face_layers(ground().mesh, {0, 0, 0, 0, 0, offset});
     CHECK(compliance(layers, 6, 6, hole_top, top) == Approx(top - hole_top - offset).epsilon(1e-12));
-    for (const double factor : layers.factor) {
-      CHECK(factor >= 0.8);
-      CHECK(factor <= 4.0 / 3.0 + 1e-12);
+    for (const auto& share : layers.share) {
+      CHECK(share[2] >= 0.75 - 1e-12);
+      CHECK(share[2] <= 1.25 + 1e-12);
     }
   }
 }
@@ -65,10 +66,40 @@ TEST_CASE("a layer is as many elements thick as four offsets take", "[face_layer
   }
 }
 
-TEST_CASE("where two layers meet both factors count", "[face_layers]") {
+TEST_CASE("where layers meet each counts along its own axis", "[face_layers]") {
   const FaceLayers layers = face_layers(ground().mesh, {0.2, 0, 0, 0.1, 0, 0.3});
   const FaceLayers x = face_layers(ground().mesh, {0.2, 0, 0, 0, 0, 0}), y = face_layers(ground().mesh, {0, 0, 0, 0.1, 0, 0}),
                    z = face_layers(ground().mesh, {0, 0, 0, 0, 0, 0.3});
   for (std::size_t e = 0; e < layers.material.size(); ++e)
-    CHECK(factor_of(layers, e) == Approx(factor_of(x, e) * factor_of(y, e) * factor_of(z, e)).epsilon(1e-14));
+    CHECK(share_of(layers, e) == std::array<double, 3>{share_of(x, e)[0], share_of(y, e)[1], share_of(z, e)[2]});
+}
+
+TEST_CASE("across its face a layer is stiffer by 1/s, along it as stiff as the ground", "[face_layers]") {
+  Eigen::Matrix<double, 6, 6> random = Eigen::Matrix<double, 6, 6>::Random();
+  const Eigen::Matrix<double, 6, 6> positive = random * random.transpose() + 0.5 * Eigen::Matrix<double, 6, 6>::Identity();
+  coupler::Stiffness ground_stiffness;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) ground_stiffness[i][j] = positive(i, j);
+  const auto matrix = [](const coupler::Stiffness& c) {
+    Eigen::Matrix<double, 6, 6> m;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) m(i, j) = c[i][j];
+    return m;
+  };
+  CHECK(coupler::layer_stiffness(ground_stiffness, {1, 1, 1}) == ground_stiffness);
+  const Eigen::Matrix<double, 6, 6> compliance = matrix(ground_stiffness).inverse();
+  const int across[3][3] = {{0, 4, 5}, {1, 3, 5}, {2, 3, 4}}, along[3][3] = {{1, 2, 3}, {0, 2, 4}, {0, 1, 5}};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double s : {0.75, 1.25}) {
+      std::array<double, 3> share{1, 1, 1};
+      share[axis] = s;
+      const Eigen::Matrix<double, 6, 6> layer = matrix(coupler::layer_stiffness(ground_stiffness, share));
+      CHECK(layer.eigenvalues().real().minCoeff() > 0.0);
+      // sides held: only strain across the face
+      const Eigen::Matrix3d ratio = layer(across[axis], across[axis]) * s - positive(across[axis], across[axis]);
+      CHECK(ratio.norm() < 1e-12 * positive.norm());
+      // no stress across the face: the compliance along it
+      const Eigen::Matrix3d change = layer.inverse()(along[axis], along[axis]) - compliance(along[axis], along[axis]);
+      CHECK(change.norm() < 1e-10 * compliance.norm());
+    }
 }
