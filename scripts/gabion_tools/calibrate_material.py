@@ -157,8 +157,8 @@ def main(options):
     record = {"material": name, "parameters": material, "plan": plan.description(), "targets": options.wanted, "search": trail,
               "found": found, "samples": samples}
     (folder / "calibration.json").write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    missed = material_search.missed(options.wanted, found)
     if options.wanted:
-        missed = material_search.missed(options.wanted, found)
         material_files.write(file, described(material, found), provenance(name, plan, options, found, trail))
         print(f"material {short(file)}")
         for line in missed:
@@ -167,7 +167,7 @@ def main(options):
         drawing.call("laboratory_plot", folder)
         print(f"plot {short(folder / 'plots' / 'triaxial.png')}")
     print(f"all figures {short(folder / 'calibration.json')}")
-    return 0
+    return 1 if missed else 0
 
 
 def described(material, found):
