@@ -16,7 +16,7 @@ namespace {
 
 std::vector<std::string> models_of(const std::filesystem::path& file) {
   if (file.stem() == "impact" || file.stem() == "tiny_clumps") return {"dem", "bridging", "edge"};
-  if (file.stem() == "rigid_box") return {"dem"};
+  if (file.stem() == "rigid_box" || file.stem() == "sphere_drop") return {"dem"};
   return {"dem", "continuum", "bridging", "edge"};
 }
 
