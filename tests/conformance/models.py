@@ -37,7 +37,8 @@ def set_up_lattice(client):
     """A simple cubic lattice of touching bonded grains, periodic in every direction."""
     client.ask("OPTIONS", **{**options(1), "box_lo": [0] * 3, "box_hi": [LATTICE_SIDE] * 3, "periodic": [1] * 3})
     client.ask("GRAIN_MATERIALS", normal_stiffness=[STIFFNESS], shear_stiffness=[0.3 * STIFFNESS], density=[DENSITY],
-               friction=[math.inf], normal_strength=[math.inf], shear_strength=[math.inf])
+               friction=[math.inf], normal_strength=[math.inf], shear_strength=[math.inf], rolling_stiffness=[0.0],
+               rolling_friction=[0.0], restitution=[1.0], rotation=[1])
     places = [[RADIUS * (1 + 2 * n) for n in (i, j, k)] for i in range(LATTICE) for j in range(LATTICE) for k in range(LATTICE)]
     client.ask("GRAINS", position=places, radius=[RADIUS] * len(places), material=[0] * len(places))
     client.ask("CONTACT_OPTIONS", geometry="updated", rotations=1, skin=0.0)

@@ -91,7 +91,7 @@ TEST_CASE("unknown words") {
       {{"ground.periodic=[\"w\"]"}, "ground.periodic[0]", "expected one of x, y, z"},
       {{"grains.geometry=frozn"}, "grains.geometry", "did you mean 'frozen'?"},
       {{"output.fields=[\"stresses\"]"}, "output.fields[0]", "did you mean 'stress'?"},
-      {{"ground.material=seedsoil"}, "ground.material", "did you mean 'seed_soil'? known here: seed_gravel, seed_soil, soil; define it under 'materials' or in materials/seedsoil.json"},
+      {{"ground.material=seedsoil"}, "ground.material", "did you mean 'seed_soil'? known here: gravel_clumps, gravel_locked, gravel_rolling, seed_gravel, seed_soil, soil; define it under 'materials' or in materials/seedsoil.json"},
       {{"fills=[{\"box\": [[0,0,0],[\"1 m\",\"1 m\",\"1 m\"]], \"material\": \"lava\"}]"}, "fills[0].material", "'lava', expected the name of a material"},
   });
 }
