@@ -57,6 +57,12 @@ nlohmann::json ImpactFigures::figures(double release, double mass, double speed,
     figures["time_to_stop"] = stop - release;
     figures["impulse_to_stop"] = between(edge, impulse, stop);
   }
+  const auto slow = std::find_if(speed_.begin(), speed_.end(), [&](double v) { return v <= creep_share * speed; });
+  if (slow != speed_.end()) {
+    const auto k = static_cast<std::size_t>(slow - speed_.begin());
+    figures["time_to_first_stop"] = time_[k] - release;
+    figures["penetration_first_stop"] = penetration_[k];
+  }
   if (time_.back() >= release + early * (1.0 - rounding)) {
     figures["penetration_60ms"] = between(time_, penetration_, release + early);
     figures["impulse_60ms"] = between(edge, impulse, release + early);

@@ -4,7 +4,8 @@
 //   F4(t)  mean of the vertical force over 4 ms round t, from the impulse, so that nothing falls between rows [N]
 //   S      F4max X/(E + m g X), X the final penetration, E the kinetic energy at release: 1 for a constant force, 2 for
 //          one that grows with the penetration
-//   stop   last time at which the block goes down faster than 5 % of its speed at release: what follows is creep
+//   stop   last time at which the block goes down faster than 5 % of its speed at release: what follows is creep;
+//          first stop: the first time at which it no longer does, before it may roll over or sink on
 
 #include <nlohmann/json.hpp>
 #include <vector>

@@ -40,6 +40,8 @@ TEST_CASE("a linear force has S = 2") {
   CHECK(figures.at("impulse_end").get<double>() == Approx(mass * speed).epsilon(1e-9));
   // down to 5 % of the speed: cos(omega t) = 0.05
   CHECK(figures.at("time_to_stop").get<double>() == Approx(std::acos(0.05) / omega).margin(1e-4));
+  CHECK(figures.at("time_to_first_stop").get<double>() == Approx(std::acos(0.05) / omega).margin(2e-4));
+  CHECK(figures.at("penetration_first_stop").get<double>() == Approx(speed / omega * std::sqrt(1.0 - 0.05 * 0.05)).epsilon(1e-3));
 }
 
 TEST_CASE("a history that is too short leaves figures out") {

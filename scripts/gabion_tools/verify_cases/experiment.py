@@ -19,7 +19,7 @@ MECHANISMS = ("rolling", "locked", "clumps")
 FIRST = MECHANISMS[0]  # whose figures carry the plain names
 TRENCH = '[["-2 m","-2 m","-2 m"],["2 m","2 m","0 m"]]'
 GOALS = {"penetration": "0.51 +- 0.051", "max_force": "3.5e+06 +- 5.25e+05"}
-FIGURES = {"penetration": ("penetration_end", "m"), "max_force": ("largest_force_4ms", "N"), "stop_time": ("time_to_stop", "s"),
+FIGURES = {"penetration": ("penetration_end", "m"), "max_force": ("largest_force_4ms", "N"), "stop_time": ("time_to_first_stop", "s"),
            "S": ("S", "")}
 
 
