@@ -45,7 +45,8 @@ std::uint64_t key_of(const protocol::MeasureFace& face, const scene::Scene& scen
   const scene::Material& soil = scene.material(scene.ground.material);
   key.add(packing.gap);
   key.add(soil.shear_stiffness / soil.normal_stiffness);
-  key.add(static_cast<std::uint64_t>(scene.grains.rotations));
+  const bool rotating = scene.grains.rotations && soil.rotates;
+  key.add(rotating ? std::uint64_t{1} : std::uint64_t{2});  // not 0, see obtain_elasticity
   for (int axis = 0; axis < 3; ++axis) {
     key.add(scene.ground.box.lo[axis]);
     key.add(scene.ground.box.hi[axis]);
