@@ -123,12 +123,15 @@ def table(found):
     how = "least squares of sigma_1 against sigma_3" if several else "one confinement: angle of a material without cohesion"
     lines.append(f"  strength, {how}, confinements {places} kPa")
     for kind in ("peak", "residual"):
-        lines.append(f"    {kind:8} phi {_text(found[kind]['friction_angle'])} degrees"
-                     + (f"   c {_text(found[kind]['cohesion'], 1e3)} kPa   misfit {_text(found[kind]['misfit'], 1e3)} kPa" if several else ""))
+        line = f"    {kind:8} phi {_text(found[kind]['friction_angle'])} degrees"
+        if several:
+            line += f"   c {_text(found[kind]['cohesion'], 1e3)} kPa   misfit {_text(found[kind]['misfit'], 1e3)} kPa"
+        lines.append(line)
     lines.append("    confinement   peak q [kPa]     at strain [%]    residual q [kPa]  dilation [degrees]  energy error")
     for test in found["tests"]:
         lines.append(f"    {test['confinement'] / 1e3:7g} kPa   {_text(test['peak_deviator'], 1e3):15}  "
-                     f"{_text(test['peak_strain'], 1e-2, 3):15}  {_text(test['residual_deviator'], 1e3):15}{' ' if test['residual_is_steady'] else '*'}  "
+                     f"{_text(test['peak_strain'], 1e-2, 3):15}  {_text(test['residual_deviator'], 1e3):15}"
+                     f"{' ' if test['residual_is_steady'] else '*'}  "
                      f"{_text(test['dilation_angle']):18}  {test['largest_energy_error']:.1e}")
     if not all(test["residual_is_steady"] for test in found["tests"]):
         lines.append("    * still changes by more than 10 % at the end: raise --axial-strain")

@@ -72,8 +72,10 @@ def search(plan, name, material, options, folder):
     def measure(values, tests, label):
         reduced = argparse.Namespace(**{**vars(options), "tests": tests})
         found, _ = laboratory.measure(laboratory.Plan(reduced), name, values, folder / f"search-{len(trail) + 1}", quiet=True)
-        trail.append({"changed": label, "found": {key: value_of(found, key) for key in
-                                                  ("young", "poisson", *(("friction_angle", "residual_friction_angle", "cohesion") if "peak" in found else ()))}})
+        names = ["young", "poisson"]
+        if "peak" in found:
+            names += ["friction_angle", "residual_friction_angle", "cohesion"]
+        trail.append({"changed": label, "found": {key: value_of(found, key) for key in names}})
         text = ", ".join(f"{key} {value:.5g}" for key, value in trail[-1]["found"].items())
         print(f"{len(trail):2}  {label}: {text}", flush=True)
         return found
