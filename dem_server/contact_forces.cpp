@@ -73,7 +73,8 @@ void ContactForces::add(std::size_t first, std::size_t last, double past_step, c
       motion.velocity.data(), rotation.spin.data(),  motion.force.data(),  rotation.torque.data(),
       buffer_.force.data(),   buffer_.moment.data(), grains.radius.data(), past_step,
       table.bending.data(),   buffer_.couple.data(), table.rolling.data(), table.drag.data(),
-      table.damper.data(),    strain_rate};
+      table.damper.data(),    strain_rate,
+      lever.empty() ? nullptr : lever.data()};
   const std::size_t blocks = (last - first + block - 1) / block;
   sums_.assign(blocks, ContactSums{});
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)

@@ -36,7 +36,8 @@ class ContactForces {
 
   bool stretched = false;  ///< the ground may be strained between steps, see DemEngine::stretch
   Vec strain_rate{};       ///< of the last such strain, over the branches it led to, 1/s
-  Vec virial{};            ///< when stretched: sum of force on i times branch i to j, x y z, at the last call, N m
+  VecField lever;          ///< arms of the grains in their clumps after it, m; empty without clumps
+  Vec virial{};            ///< when stretched: sum of force on i times branch from body to body, x y z, at the last call, N m
 
   /// Call when the table was replaced.
   void table_changed(std::size_t grains);

@@ -42,7 +42,9 @@ struct LoopArrays {
   const RollingResistance* rolling;
   Vec* drag;
   const ContactDamper* damper;
-  Vec strain_rate;  // of the ground in the last step; read for a Stretched law only
+  // read for a Stretched law only: of the ground in the last step; arms of the grains in their clumps, or null
+  Vec strain_rate;
+  const Vec* lever;
 };
 
 /// What one contact does to its grains. couple: on i, N m.
@@ -93,7 +95,8 @@ inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, Co
   const ContactSpring k = a.stiffness[c];
 
   // kinematics of the last step
-  const Vec dv = relative_velocity<Law>(a.velocity[j] - a.velocity[i], a.strain_rate, D);
+  const Vec carried = carried_branch<Law>(a.lever, i, j, D);
+  const Vec dv = relative_velocity<Law>(a.velocity[j] - a.velocity[i], a.strain_rate, carried);
   const Vec dt = splat(a.past_step);
   const Vec middle = fnma(splat(0.5 * a.past_step), dv, D);
   Vec slip = dv;
@@ -169,7 +172,7 @@ inline bool contact_action(const LoopArrays& a, std::size_t i, std::size_t c, Co
     action.arm_i = 0.5 * d + k.half_difference;
     action.arm_j = 0.5 * d - k.half_difference;
   }
-  if constexpr (is_stretched<Law>) sums.virial += action.force * D;
+  if constexpr (is_stretched<Law>) sums.virial += action.force * carried;
   return true;
 }
 

@@ -67,7 +67,7 @@ class DemEngine : public engine::Engine {
   /// Maps the box and the grains, contacts included, by x -> x + strain (x - centre), along x, y, z. At most once
   /// after each step; velocities and displacements stay those beyond the homogeneous motion.
   void stretch(Vec strain);
-  /// Sum over contacts of the force on i times the branch from i to j, by components x, y, z, at the forces of the
+  /// Sum over contacts of the force on i times the branch from its body to that of j, by components x, y, z, at the forces of the
   /// last step: the volume times the mean normal stresses, tension positive, N m.
   Vec virial() const { return contact_.virial; }
 
@@ -129,6 +129,7 @@ class DemEngine : public engine::Engine {
   void begin_step(const engine::StepContext& context);
   void refresh_contacts();
   double search_limit() const;
+  void find_levers();
   std::vector<Pair> near_pairs() const;
   void external_forces(const engine::StepContext& context);
   void surface_forces();

@@ -1,10 +1,11 @@
 // DemEngine: homogeneous strain of a periodic ground, between steps.
 //
 //   x' = x + E (x - c)                 positions, box and images; c the centre of the box
-//   D' = D + E D                       branches: with du kept, the branch at rest takes the whole of E D
-//   |B'|^2 - rest^2 = |B|^2 - rest^2 + (B + B').E D
+//   D' = D + E (D - a_j + a_i)         branches: with du kept, the branch at rest takes the whole of the change
+//   |B'|^2 - rest^2 = |B|^2 - rest^2 + (B + B').(B' - B)
 //
 //   D  branch as it stands [m]    B  the same without displacements [m]    E  strain along x, y, z
+//   a  arm of a grain in its clump [m], 0 for single ones: a clump moves with its centre and keeps its shape
 //
 // Velocities are those beyond the homogeneous motion, so the grains feel contacts only: no term of the
 // strain's own acceleration (Parrinello & Rahman 1981 without the term of relative order rate * dt).
@@ -40,6 +41,8 @@ void DemEngine::stretch(Vec strain) {
   built_options_.box_lo = built_domain_.lo = options.box_lo;
   built_options_.box_hi = built_domain_.hi = options.box_hi;
 
+  find_levers();
+  const Vec* lever = contact_.lever.empty() ? nullptr : contact_.lever.data();
   ContactTable& table = contact_.table;
   const VecField& u = motion.displacement;
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
@@ -48,17 +51,36 @@ void DemEngine::stretch(Vec strain) {
       Vec branch = table.branch[c];
       const double rest = branch[3];
       branch[3] = 0.0;
-      const Vec more = strain * (branch + (u[table.second[c]] - u[i]));
+      const auto j = static_cast<std::size_t>(table.second[c]);
+      Vec carried = branch + (u[j] - u[i]);
+      if (lever != nullptr) carried -= lever[j] - lever[i];
+      const Vec more = strain * carried;
       table.spring[c][3] += dot(branch + branch + more, more);
       branch += more;
       branch[3] = rest;
       table.branch[c] = branch;
     }
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-  for (std::size_t i = 0; i < grains_.size(); ++i) motion.position[i] += strain * (motion.position[i] + u[i] - centre);
+  for (std::size_t i = 0; i < grains_.size(); ++i) {
+    const Vec body = motion.position[i] + u[i] - (lever != nullptr ? lever[i] : Vec{});
+    motion.position[i] += strain * (body - centre);
+  }
 
   if (past_step_ > 0.0) contact_.strain_rate = strain / ((splat(1.0) + strain) * splat(past_step_));
   strain_at_build_ += std::max({std::fabs(strain[0]), std::fabs(strain[1]), std::fabs(strain[2])});
+}
+
+/// Arms of the clumps' members as they stand.
+void DemEngine::find_levers() {
+  if (clumps_.empty()) {
+    contact_.lever.clear();
+    return;
+  }
+  contact_.lever.assign(grains_.size(), Vec{});
+  for (std::size_t b = 0; b < clumps_.size(); ++b) {
+    const std::span<const std::int32_t> members = clumps_.members(b);
+    for (std::size_t k = 0; k < members.size(); ++k) contact_.lever[members[k]] = clumps_.arm(b, k);
+  }
 }
 
 /// Square of the way a grain may go before pairs are searched anew: half the skin, less half of what the strain
@@ -67,7 +89,10 @@ double DemEngine::search_limit() const {
   double left = 0.5 * skin_;
   if (strain_at_build_ > 0.0) {
     const double largest = *std::max_element(grains_.radius.begin(), grains_.radius.end());
-    left -= 0.5 * strain_at_build_ * (2.0 * largest + skin_) * (1.0 + strain_at_build_);
+    double longest = 0.0;  // arm
+    for (const Vec arm : contact_.lever) longest = std::max(longest, dot(arm, arm));
+    longest = std::sqrt(longest);
+    left -= 0.5 * strain_at_build_ * (2.0 * (largest + longest) + skin_) * (1.0 + strain_at_build_);
   }
   return left < 0.0 ? -1.0 : left * left;
 }
