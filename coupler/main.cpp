@@ -50,11 +50,15 @@ int run(const Arguments& arguments) {
   const bool grains = coupler::uses_grains(read.scene.model), mesh = coupler::uses_mesh(read.scene.model);
   if (arguments.check) {
     if (arguments.json)
-      std::cout << nlohmann::json{{"scene", read.scene.name}, {"hash", read.hash_text}, {"dem", grains}, {"continuum", mesh}}.dump() << "\n";
+      std::cout << nlohmann::json{{"scene", read.scene.name}, {"hash", read.hash_text}, {"dem", grains}, {"continuum", mesh},
+                                  {"zone_to_choose", grains && mesh && read.scene.grains.zone_to_choose},
+                                  {"effective", nlohmann::json::parse(read.effective)}}.dump() << "\n";
     else
       std::cout << arguments.scene << ": valid (" << read.hash_text << ")\n";
     return finished;
   }
+  if (grains && mesh && read.scene.grains.zone_to_choose)
+    throw coupler::ScenarioError("coupling.zone: 'auto' is chosen by gabion run, which gives the coupler a box in its place; gabion zone prints one");
   const auto need = [](bool wanted, const std::string& address, const char* option) {
     if (wanted && address.empty())
       throw protocol::AddressError(std::string(option) + " HOST:PORT is needed for this model: start the engine, it prints its port");

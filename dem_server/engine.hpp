@@ -146,6 +146,7 @@ class DemEngine : public engine::Engine {
   void check_motion() const;
   void count_lost();
   std::vector<double> contact_rows() const;
+  std::vector<double> yield_rows() const;
 
   Grains grains_;
   ContactOptions contact_options_;

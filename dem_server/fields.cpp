@@ -35,7 +35,7 @@ std::vector<double> table(std::vector<double> values, std::uint64_t width, Shape
 std::vector<std::string> DemEngine::field_names() {
   return {"position", "displacement", "velocity", "rotation", "spin",      "force", "radius",    "mass",
           "weight",   "contact",      "broken",   "lost",     "tie_force", "block", "block_forces", "wall_force",
-          "clump"};
+          "clump",    "yield"};
 }
 
 std::optional<std::vector<double>> DemEngine::field(const std::string& name, Shape& shape) const {
@@ -61,6 +61,7 @@ std::optional<std::vector<double>> DemEngine::field(const std::string& name, Sha
        [&] {
          return column({contact_.broken_of.begin(), contact_.broken_of.end()}, shape);
        }},
+      {"yield", [&] { return table(yield_rows(), 3, shape); }},
       {"lost",
        [&] {
          std::vector<double> flags(grains_.size(), 0.0);

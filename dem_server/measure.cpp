@@ -143,6 +143,45 @@ std::vector<double> DemEngine::contact_rows() const {
   return rows;
 }
 
+namespace {
+
+/// 0 to 1; a limit of zero is used up by anything.
+double share_of(double force, double limit) {
+  if (!(force > 0.0)) return 0.0;
+  return limit > force ? force / limit : 1.0;
+}
+
+}  // namespace
+
+/// Per grain: its contacts, broken bonds included; those of them that slide or are broken; sum of what the others
+/// use of their strength, each from 0 to 1 (shear over Coulomb's limit, or tension and shear over the bond's strengths).
+std::vector<double> DemEngine::yield_rows() const {
+  const ContactTable& table = contact_.table;
+  std::vector<double> rows(3 * grains_.size(), 0.0);
+  for (std::size_t i = 0; i < contact_.broken_of.size(); ++i)
+    rows[3 * i] = rows[3 * i + 1] = static_cast<double>(contact_.broken_of[i]);
+  if (contact_options_.geometry == Geometry::frozen) return rows;
+  table.each([&](std::size_t i, std::size_t c) {
+    const std::uint8_t state = table.state[c];
+    if (!(state & (bonded | touching)) || state & counted) return;
+    const auto j = static_cast<std::size_t>(table.second[c]);
+    const ContactSpring& k = table.stiffness[c];
+    const double tension = k.normal * reach_of(table, c, motion.displacement[j] - motion.displacement[i]).elongation;
+    const double shear = k.shear * norm(table.spring[c] * vec(1, 1, 1));
+    double used = 0.0;
+    if (state & touching)
+      used = share_of(shear, -k.friction * tension);
+    else if (!table.strength.empty())
+      used = std::max(share_of(tension, table.strength[c].tensile), share_of(shear, table.strength[c].shear));
+    for (const std::size_t g : {i, j}) {
+      rows[3 * g] += 1.0;
+      rows[3 * g + 1] += state & sliding ? 1.0 : 0.0;
+      rows[3 * g + 2] += state & sliding ? 0.0 : used;
+    }
+  });
+  return rows;
+}
+
 double DemEngine::mean_contact_force() const {
   const std::vector<double> rows = contact_rows();
   double total = 0.0;

@@ -221,6 +221,7 @@ void Recorder::state(const std::string& stage, std::uint64_t step, double time, 
     results_.grain_field("displacement", less(u_grains, zeroed_grains_), 3, "m");
     if (!zeroed_grains_.empty()) results_.grain_field("zeroed_displacement", zeroed_grains_, 3, "m");
     for (const FieldOf& f : grain_fields) results_.grain_field(f.name, dem->fetch(f.name), f.components, f.unit);
+    if (damage_) results_.grain_field("damage", *damage_, 1, "");
     if (wants("rotation")) results_.grain_field("rotation", dem->fetch("rotation"), 3, "rad");
     if (wants("contact_force")) results_.contacts(dem->fetch("contact"));
   }

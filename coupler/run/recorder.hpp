@@ -33,6 +33,8 @@ class Recorder {
   void state(const std::string& stage, std::uint64_t step, double time, double dt, EngineLink* dem,
              EngineLink* continuum, const InterfaceTie* tie);
 
+  /// Stored with each state from now on: largest share of a grain's contacts that slid or were broken so far, [grains].
+  void show_damage(const std::vector<double>& damage) { damage_ = &damage; }
   /// Where the rows of the tie act, before the first state.
   void interface_geometry(const InterfaceTie& tie);
   /// The block's shape, before the first state; where it is goes with each state.
@@ -76,6 +78,7 @@ class Recorder {
   std::unique_ptr<History> monitor_, energy_rows_, probes_, reactions_, counters_, block_;
   std::vector<std::string> dem_probes_, continuum_probes_;
   std::uint64_t last_state_step_ = 0;
+  const std::vector<double>* damage_ = nullptr;
   std::vector<double> zeroed_grains_, zeroed_nodes_;        ///< displacements at the last zeroing, m; empty: none
   std::vector<double> zeroed_probes_;                        ///< in the order of the columns
   bool zero_probes_ = false;                                 ///< the next sample becomes the zero

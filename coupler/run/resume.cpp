@@ -51,7 +51,7 @@ void Simulation::save_checkpoint() {
       {"step", stepper_->step()}, {"time", stepper_->time()}, {"dt", dt_},
       {"stage", at_.stage}, {"taken", at_.taken}, {"most", at_.most}, {"least", at_.least}, {"unbalanced", at_.unbalanced},
       {"next_output", next_output_}, {"largest_rotation", largest_rotation_}, {"largest_damage", largest_tied_damage_}, {"stable_dem", stable_dem_}, {"stable_continuum", stable_continuum_},
-      {"stages", stages_}, {"warnings", warnings_}, {"recorder", recorder_->memory()}, {"faces", faces_->dead_loads()},
+      {"zone_watch", zone_watch_ ? zone_watch_->memory() : nlohmann::json()}, {"steps_to_look", steps_to_look_}, {"stages", stages_}, {"warnings", warnings_}, {"recorder", recorder_->memory()}, {"faces", faces_->dead_loads()},
       {"block", block_ ? to_json(*block_) : nlohmann::json()}, {"dem", state_of(dem_)}, {"continuum", state_of(continuum_)}};
   write_checkpoint(folder_.file(checkpoint_name), state);
   checkpointed_ = std::chrono::steady_clock::now();
@@ -74,6 +74,8 @@ std::size_t Simulation::restore_checkpoint() {
   saved.at("next_output").get_to(next_output_);
   saved.at("largest_damage").get_to(largest_tied_damage_);
   saved.at("largest_rotation").get_to(largest_rotation_);
+  saved.at("steps_to_look").get_to(steps_to_look_);
+  if (zone_watch_) zone_watch_->remember(saved.at("zone_watch"));
   saved.at("stable_dem").get_to(stable_dem_);
   saved.at("stable_continuum").get_to(stable_continuum_);
   set_step(saved.at("dt"));

@@ -20,6 +20,8 @@ constexpr double tolerable_damage = 0.01;
 /// Time between two rows of block.csv, s, and the steps between them at most.
 constexpr double block_row_time = 1e-3;
 constexpr double most_block_row_steps = 50;
+/// Steps between two looks at what yields, at least.
+constexpr std::uint64_t steps_between_looks = 40;
 
 std::string hex(std::uint64_t value) {
   char text[24];
@@ -55,6 +57,8 @@ nlohmann::json Simulation::run() {
     warnings_.push_back(number(100.0 * largest_tied_damage_) + " % of the contacts of tied grains slid or broke, more than " +
                         number(100.0 * tolerable_damage) + " %: the mesh beside them cannot follow. Enlarge coupling.zone, so that the "
                         "overlap or border lies in ground that stays elastic");
+  if (zone_watch_)
+    if (const std::string advice = zone_watch_->advice(recorder_->energy().largest_energy()); !advice.empty()) warnings_.push_back(advice);
   nlohmann::json result = summary();
   result["wall"]["total"] = std::chrono::duration<double>(Clock::now() - begin).count();
   folder_.write_json("summary.json", result);
@@ -102,6 +106,10 @@ void Simulation::prepare() {
     if (!stage.gravity) throw ScenarioError("stages.gravity: false is not supported in stage '" + stage.name + "'; leave it out, or set gravity to 0 for the whole scene");
   }
   recorder_.emplace(folder_, scene_, assembly_, grain_weights_);
+  if (dem_) {
+    zone_watch_.emplace(assembly_.zone, assembly_.grains, tie_ ? &tie_->rows() : nullptr);
+    recorder_->show_damage(zone_watch_->damage());
+  }
   if (tie_) recorder_->interface_geometry(*tie_);
   if (scene_.block && dem_) recorder_->block_shape(placed_block(assembly_.grains));
   stepper_.emplace(dem_, continuum_, tie_ ? &*tie_ : nullptr);
@@ -233,6 +241,7 @@ void Simulation::run_stage(const scene::Stage& stage) {
                    unbalanced, recorder_->energy().error());
     if (block_) recorder_->block_row(stepper_->time(), *block_, dem_->fetch("block"), dem_->fetch("block_forces"), chunk);
     watch(stage, last_);
+    look_at_zone(stage, chunk);
     if (scene_.output.every > 0.0 && stepper_->time() >= next_output_ - 0.5 * dt_) {
       recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
       next_output_ += scene_.output.every;
@@ -323,6 +332,15 @@ void Simulation::watch(const scene::Stage& stage, const Advance& advance) {
                     number(scene_.coupling.rotation_limit) + "; linear elements take it for a strain of " + number(0.5 * rotation * rotation) + ". Enlarge grains.zone so that the interface lies in ground that does not turn");
 }
 
+/// Only while nothing damps the motion: a stage that comes to rest is not what the zone is for.
+void Simulation::look_at_zone(const scene::Stage& stage, std::uint64_t steps) {
+  if (!zone_watch_ || stage.damping > 0.0) return;
+  steps_to_look_ -= std::min(steps, steps_to_look_);
+  if (steps_to_look_ > 0) return;
+  steps_to_look_ = steps_between_looks;
+  zone_watch_->look(dem_->fetch("yield"), zone_watch_->needs_velocity() ? dem_->fetch("velocity") : std::vector<double>{});
+}
+
 nlohmann::json Simulation::summary() const {
   nlohmann::json s;
   static const std::map<scene::Model, const char*> names{
@@ -346,6 +364,8 @@ nlohmann::json Simulation::summary() const {
     const InterfaceReport& r = tie_->report();
     s["interface"] = {{"grains", r.grains}, {"rows", r.rows}, {"rank", r.rank}, {"condition", r.condition}, {"merged_rows", r.merged_rows}, {"nonzeros", r.nonzeros}, {"largest_rotation", largest_rotation_}, {"largest_damaged_share", largest_tied_damage_}};
   }
+  if (zone_watch_)
+    if (nlohmann::json zone = zone_watch_->verdict(recorder_->energy().largest_energy()); !zone.is_null()) s["zone"] = zone;
   if (last_.dem)
     for (std::size_t i = 0; i < last_.dem->counter_names.size(); ++i) s["counters"][last_.dem->counter_names[i]] = last_.dem->counters[i];
   s["step"] = {{"dt", dt_}, {"count", stepper_->step()}, {"stable_dem", stable_dem_}, {"stable_continuum", stable_continuum_}, {"time", stepper_->time()}};

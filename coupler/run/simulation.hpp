@@ -16,6 +16,7 @@
 #include "coupler/run/progress.hpp"
 #include "coupler/run/recorder.hpp"
 #include "coupler/run/stepper.hpp"
+#include "coupler/run/zone_watch.hpp"
 
 namespace gabion::coupler {
 
@@ -68,6 +69,7 @@ class Simulation {
   /// Brings everything to where the checkpoint was taken; returns the index of its stage.
   std::size_t restore_checkpoint();
   void watch(const scene::Stage& stage, const Advance& advance);
+  void look_at_zone(const scene::Stage& stage, std::uint64_t steps);
   static double tied_damage(const protocol::RunDone& report);
   nlohmann::json summary() const;
 
@@ -98,6 +100,8 @@ class Simulation {
   StagePlace at_;
   nlohmann::json resumed_;  ///< null: a run from the start
   double largest_tied_damage_ = 0.0;
+  std::optional<ZoneWatch> zone_watch_;
+  std::uint64_t steps_to_look_ = 0;  ///< until the zone is looked at again
   double largest_rotation_ = 0.0;  ///< rad, of the interface, where it moved far enough to be looked at
   std::string last_checkpoint_;
   std::chrono::steady_clock::time_point checkpointed_ = std::chrono::steady_clock::now();

@@ -79,6 +79,7 @@ void set_radius(Grains& grains, const Json& radius) {
 
 Grains grains(const Json& g, const Json& coupling) {
   Grains result{.zone = {},
+                .zone_to_choose = coupling.value("zone", Json()) == "auto",
                 .packing = g["packing"],
                 .file = g.value("file", ""),
                 .bond_gap = g["bond_gap"],
@@ -90,7 +91,7 @@ Grains grains(const Json& g, const Json& coupling) {
                 .rotations = g["rotations"] == "free",
                 .geometry = g["geometry"]};
   if (g.contains("zone")) result.zone = box(g["zone"]);
-  if (coupling.contains("zone")) result.zone = box(coupling["zone"]);
+  if (coupling.contains("zone") && !result.zone_to_choose) result.zone = box(coupling["zone"]);
   set_radius(result, g["radius"]);
   return result;
 }

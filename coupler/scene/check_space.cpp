@@ -99,6 +99,7 @@ void check_lattice(Checker& check) {
 /// Returns false when the zone makes no sense, so that nothing more is said about it.
 bool check_zone(Checker& check) {
   const Scene& scene = check.scene;
+  if (check.coupled() && scene.grains.zone_to_choose) return false;  // nothing to look at yet
   const std::string path = check.zone_path();
   if (scene.grains.zone) {
     if (!ordered(check, *scene.grains.zone, path)) return false;
@@ -253,7 +254,8 @@ void check_space(Checker& check) {
   if (has_radius) check_radius(check);
   if (has_radius) check_lattice(check);
   const bool sound_zone = check_zone(check);
-  if (check.has_mesh() && has_size) check_elements(check);
+  const bool to_choose = check.coupled() && scene.grains.zone_to_choose;
+  if (check.has_mesh() && has_size && !to_choose) check_elements(check);
   if (sound_zone && has_size && has_radius) check_overlap(check);
   if (sound_zone) check_fills_and_mesh(check);
   if (sound_zone) check_block_place(check);

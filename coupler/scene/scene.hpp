@@ -62,6 +62,7 @@ struct Ground {
 
 struct Grains {
   std::optional<Box> zone;              ///< absent: the whole ground
+  bool zone_to_choose = false;          ///< zone = auto: someone has to put a box in its place before the run
   std::string packing = "random";       ///< random, fcc, sc, file
   std::string file;                     ///< of the packing; empty: none
   double bond_gap = 0.0;                ///< packing from a file: largest gap of a bond over the sum of the radii

@@ -17,6 +17,7 @@ COMMANDS = {
     "report": "write the report of a run folder again",
     "calibrate": "test a material on periodic samples, or find parameters that give wanted figures",
     "pack": "make the packing of a scene and show it",
+    "zone": "say which zone of grains, overlap and mesh a scene needs",
     "doctor": "say what is installed, built and missing",
 }
 

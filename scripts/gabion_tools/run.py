@@ -1,11 +1,12 @@
 """gabion run: one scene, one model or several, then summary, plots and report."""
 
+import json
 import os
 import subprocess
 import sys
 from pathlib import Path
 
-from gabion_tools import build, drawing, processes, scenes, summary
+from gabion_tools import build, drawing, processes, scenes, summary, zone_size
 from gabion_tools.errors import UserError
 from gabion_tools.places import RUNS, executable, short
 
@@ -98,13 +99,16 @@ def prepare(folder, overwrite):
 
 
 def run_one(scene, options, model, folder):
-    changes = overrides(options, model)
+    changes, choice = zone_size.resolve(scene, overrides(options, model), options.threads)
     model = scenes.model(scene, changes)
     if folder is None:
         folder = prepare(options.out, options.overwrite) if options.out else free_folder(f"{scene.stem}-{model}")
     else:
         folder = prepare(folder, options.overwrite)
-    return carry_out(scene, changes, model, folder, options)
+    code = carry_out(scene, changes, model, folder, options)
+    if choice is not None:
+        (folder / "zone.json").write_text(json.dumps(choice, indent=1), encoding="utf-8")
+    return code
 
 
 def carry_out(scene, changes, model, folder, options, extra=()):

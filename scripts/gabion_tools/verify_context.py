@@ -9,7 +9,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from gabion_tools import processes, run, scenes
+from gabion_tools import processes, run, scenes, zone_size
 from gabion_tools.errors import Failure
 from gabion_tools.places import BUILD, executable
 from gabion_tools.run_data import Run
@@ -96,6 +96,8 @@ class Context:
         if key not in self.runs:
             folder = self.root / f"{path.stem}-{key}"
             folder.mkdir(parents=True)
+            if any('zone="auto"' in change for change in changes):
+                changes, _ = zone_size.resolve(path, changes, threads, say=lambda text: None)
             code = processes.couple(path, scenes.override_arguments(changes), folder,
                                     run.engines(scenes.model(path, changes), threads), quiet=True)
             self.runs[key] = RunResult(folder, code)

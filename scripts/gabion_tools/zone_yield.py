@@ -1,0 +1,74 @@
+"""Where a run's ground yielded, and how fast its load changed. Needs numpy; prints JSON. Words: FOLDER SHARE."""
+
+import json
+import math
+import sys
+
+import numpy as np
+
+from gabion_tools.run_data import Run
+
+YIELDED = 0.5           # damage of a grain from which on the search for the box begins
+FEWEST_GRAINS = 30      # of a slab, below which its share says nothing
+ENERGY_SHARE = 0.95     # of the load's rate, below the frequency that is given
+
+
+def slab_share(position, damage, axis, inside, edges):
+    """Mean damage of the slabs between edges along an axis; nan where too few grains lie."""
+    place = np.digitize(position[inside, axis], edges) - 1
+    valid = (place >= 0) & (place < len(edges) - 1)
+    count = np.bincount(place[valid], minlength=len(edges) - 1)
+    total = np.bincount(place[valid], weights=damage[inside][valid], minlength=len(edges) - 1)
+    return np.where(count >= FEWEST_GRAINS, total / np.maximum(count, 1), np.nan)
+
+
+def yield_box(position, damage, diameter, share):
+    """[lo, hi] of the ground in which a share of the contacts or more slid or broke, m; None: nowhere."""
+    hit = damage >= YIELDED
+    if not hit.any():
+        return None
+    lo, hi = np.quantile(position[hit], 0.01, axis=0), np.quantile(position[hit], 0.99, axis=0)
+    for _ in range(3):
+        for axis in range(3):
+            others = [a for a in range(3) if a != axis]
+            inside = np.all((position[:, others] >= lo[others]) & (position[:, others] <= hi[others]), axis=1)
+            first, last = position[:, axis].min(), position[:, axis].max()
+            edges = np.linspace(first, last, max(2, int(round(2 * (last - first) / diameter))) + 1)
+            yields = np.flatnonzero(slab_share(position, damage, axis, inside, edges) >= share)
+            if len(yields):
+                lo[axis], hi[axis] = edges[yields[0]], edges[yields[-1] + 1]
+    return [lo.tolist(), hi.tolist()]
+
+
+def frequency(time, force):
+    """Below it lies 95 % of the power of the force's rate of change, Hz: what a load sends into the
+    ground goes with its rate."""
+    if len(time) < 8:
+        return None
+    step = float(np.median(np.diff(time)))
+    even = np.arange(time[0], time[-1], step)
+    rate = np.gradient(np.interp(even, time, force), step)
+    power = np.abs(np.fft.rfft(rate * np.hanning(len(rate)))) ** 2
+    total = np.cumsum(power)
+    return float(np.fft.rfftfreq(len(rate), step)[np.searchsorted(total, ENERGY_SHARE * total[-1])])
+
+
+def main(folder, share):
+    run = Run(folder)
+    grains = run.state("grains")
+    diameter = 2.0 * float(grains["radius"].mean())
+    found = {"box": yield_box(grains["position"], grains["damage"], diameter, share), "diameter": diameter,
+             "grains": len(grains["radius"]), "yielded": float((grains["damage"] >= YIELDED).mean()),
+             "frequency": None, "shear_speed": None}
+    block = run.histories.get("block")
+    if block:
+        found["frequency"] = frequency(block["time [s]"], block["force_filtered [N]"])
+        found["penetration"] = float(block["penetration [m]"][-1])
+    elastic = run.summary.get("elasticity")
+    if elastic:
+        found["shear_speed"] = math.sqrt(elastic["stiffness"][3][3] / elastic["density"])
+    print(json.dumps(found))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], float(sys.argv[2]))
