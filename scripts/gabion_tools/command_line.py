@@ -13,6 +13,7 @@ COMMANDS = {
     "check": "read a scene, say what it would do or what is wrong with it",
     "test": "build everything and run every test",
     "verify": "compare with closed forms and references, figure by figure",
+    "bench": "speed against error of every scene, on one page",
     "plot": "draw the plots of a run folder again",
     "report": "write the report of a run folder again",
     "calibrate": "test a material on periodic samples, or find parameters that give wanted figures",

@@ -68,8 +68,8 @@ def confined_constants(reference, model, size):
     head = -sum(values[-1] for name, values in reference.histories["reactions"].items() if "zmax.z" in name)
     modulus = head / area / -gradient[2, 2]
     young = modulus * (1 + POISSON) * (1 - 2 * POISSON) / (1 - POISSON)
-    part = share.mean() if model == "continuum" else 0.5
-    density = (sample.grain_mass(reference) * share).sum() / (part * area * (box[1, 2] - box[0, 2]))
+    height = box[1, 2] - box[0, 2]
+    density = (sample.grain_mass(reference) * share).sum() / (triaxial.replaced_part(share, model, size, height) * area * height)
     return sample.material_of_sample(reference, float(young), POISSON, float(density))
 
 

@@ -65,14 +65,34 @@ def overlap(size):
     return float(size.get("coupling.bridging.overlap", "1.5 m").split()[0])
 
 
+def border(model, size):
+    """Height of the border, which is also the middle of the overlap, m: as in the scene, or of the zone in size."""
+    zone = size.get(f"coupling.{model}.zone")
+    if zone is None:
+        return BORDER
+    top = float(zone[1][2].split()[0])
+    return top - 0.5 * overlap(size) if model == "bridging" else top
+
+
+def kind(model):
+    """Rows of another kind are bridging too."""
+    return "bridging" if model == "strict" else model
+
+
 def replaced_share(reference, model, size):
     """What the mesh takes over of every grain: all in a continuum, 1 - w in an overlap, what lies beyond a border."""
     height = reference.state("grains")["position"][:, 2]
     if model == "continuum":
         return np.ones(len(height))
+    above = height - border(kind(model), size)
     if model == "edge":
-        return (height > BORDER).astype(float)
-    return np.clip(0.5 + (height - BORDER) / overlap(size), 0.0, 1.0)
+        return (above > 0).astype(float)
+    return np.clip(0.5 + above / overlap(size), 0.0, 1.0)
+
+
+def replaced_part(share, model, size, height):
+    """The same as a share of the sample's volume; the sample is packed more loosely along its faces."""
+    return share.mean() if model == "continuum" else 1.0 - border(kind(model), size) / height
 
 
 def constants(reference, model, size):
@@ -80,7 +100,7 @@ def constants(reference, model, size):
     share, box = replaced_share(reference, model, size), sample.ground(reference)
     young, poisson = moduli(reference, reference, share)
     height, area = box[1, 2] - box[0, 2], np.prod(box[1, :2] - box[0, :2])
-    part = share.mean() if model == "continuum" else 0.5  # both borders halve the sample
+    part = replaced_part(share, model, size, height)
     density = (sample.grain_mass(reference) * share).sum() / (part * height * area)
     return sample.material_of_sample(reference, float(young), float(poisson), float(density))
 

@@ -1,0 +1,1 @@
+"""The scenes of gabion bench error, one module each."""
