@@ -47,9 +47,9 @@ void Rotation::trial(const engine::StepContext& context) {
 }
 
 void Rotation::drift(const engine::StepContext& context) {
-  if (measured && context.damping > 0.0) {
+  if (measured) {  // always: the second half of the last damped step is still to be added
     double first = 0.0, second = 0.0;
-    for (std::size_t i = 0; i < size(); ++i) {
+    for (std::size_t i = 0; context.damping > 0.0 && i < size(); ++i) {
       first += dot(damping_torque[i], old_spin[i]);
       second += dot(damping_torque[i], spin[i]);
     }

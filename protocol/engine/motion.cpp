@@ -60,9 +60,10 @@ void Motion::trial(std::size_t first, std::size_t last, const StepContext& conte
 
 void Motion::drift(const StepContext& context) {
   const Vec dt = splat(context.dt);
-  if (measured && (context.damping > 0.0 || !viscosity.empty())) {
+  if (measured) {  // always: the second half of the last damped step is still to be added
     double first = 0, second = 0, first_viscous = 0, second_viscous = 0;
-    for (std::size_t i = 0; i < size(); ++i) {
+    const bool lossy = context.damping > 0.0 || !viscosity.empty();
+    for (std::size_t i = 0; lossy && i < size(); ++i) {
       const Vec v0 = old_velocity[i], v1 = velocity[i];
       if (context.damping > 0.0) {
         first += dot(damping_force[i], v0);

@@ -107,7 +107,7 @@ def print_table(outcomes):
 def page_table(outcomes):
     rows = ["| | case | what would show | what is asserted, and what was measured | just beyond |", "|---|---|---|---|---|"]
     for o in outcomes:
-        figures = "; ".join(f"`{name}` {worst(o.figures[name], goal):.2g} ({goal})" for name, goal in o.case.figures.items())
+        figures = "; ".join(f"`{name}` {worst(o.figures[name], goal):.2g}" + ("" if goal == "report" else f" ({goal})") for name, goal in o.case.figures.items())
         asserted = o.case.asserted + (f". {figures}" if figures else "")
         rows.append(f"| {o.case.number} | {o.case.name} | {o.case.symptom} | {asserted} | {o.case.beyond} |")
     rows += ["", "Tests of each case (`gabion test --filter`):", ""]

@@ -1,5 +1,6 @@
 """Hard cases that take whole runs: a scene a thousand kilometres away, an element that turns inside out, limits."""
 
+import csv
 import json
 import re
 import unittest
@@ -54,6 +55,25 @@ class Far(SystemTest):
                         self.assertLess(numpy.abs(far[part][0] - places - FAR).max(), 1e-9)  # the user's coordinates
         self.assertLess(worst, 1e-9)
         figure("moved_difference", worst)
+
+
+class Steps(SystemTest):
+    def test_the_balance_goes_on_from_stage_to_stage(self):
+        # damped and undamped stages have different steps; faces let go, and dead loads take their place
+        stages = [{"name": "damped", "damping": 0.5, "steps": 60}, {"name": "free", "steps": 60},
+                  {"name": "absorbing", "steps": 60, "faces": {"zmin": "absorbing"}}, {"name": "again", "damping": 0.3, "steps": 60}]
+        worst = 0.0
+        for model in ("bridging", "edge", "dem", "continuum"):
+            with self.subTest(model=model):
+                summary = self.run_scene("tiny_lattice.json", f"model={model}", f"stages={json.dumps(stages)}",
+                                         'initial={"noise": "1e-3 m/s"}', out=model)
+                worst = max(worst, summary["energy"]["balance_error"])
+                with open(self.out / "energy.csv", newline="") as file:
+                    head, *rows = csv.reader(file)
+                jumps = [k for k, name in enumerate(head) if "step_change" in name]
+                self.assertTrue(any(float(rows[-1][k]) for k in jumps))
+        self.assertLess(worst, 1e-10)
+        figure("stages_balance", worst)
 
 
 class Limits(SystemTest):
