@@ -21,6 +21,7 @@ void ContinuumEngine::set_mesh(Mesh mesh) {
   motion.position = mesh_.nodes;
   boundary = engine::Boundary{};
   tie.clear();
+  past_step_ = step_change_ = 0.0;
   prepared_ = false;
 }
 
@@ -83,9 +84,10 @@ bool ContinuumEngine::step(const StepContext& context, Exchange& exchange) {
   const bool more = !tied || exchange.receive_multipliers(tie.answer_buffer());
   if (tied) tie.correct(motion, context);
   boundary.book(motion, context);
+  book_step_change(context.dt);
   if (context.measure) measure_stored_energy();
   motion.drift(context);
-  if (context.measure) check_health();
+  if (context.measure || !motion.finite) check_health();
   return more;
 }
 
@@ -101,6 +103,13 @@ void ContinuumEngine::adapt(const StepContext& context) {
     step_size_ = context.dt;
     motion.set_step(context.dt);
   }
+}
+
+/// As DemEngine does: where the step changes the discrete energy jumps by (dt_new - dt_old)/2 f_n . v(n-1/2), loads apart.
+void ContinuumEngine::book_step_change(double dt) {
+  if (motion.measured && past_step_ != 0.0 && past_step_ != dt)
+    step_change_ -= 0.5 * (dt - past_step_) * (motion.power_before() - boundary.load_power_before());
+  past_step_ = dt;
 }
 
 void ContinuumEngine::measure_stored_energy() {
@@ -135,6 +144,7 @@ Ledger ContinuumEngine::ledger() const {
   ledger.add("gravity", Ledger::Kind::stored, gravity_);
   ledger.add("damping", Ledger::Kind::lost, -motion.damping_work.until_now());
   ledger.add("dashpots", Ledger::Kind::lost, -motion.dashpot_work.until_now());
+  ledger.add("step_change", Ledger::Kind::lost, step_change_);
   ledger.add("loads", Ledger::Kind::work, boundary.load_work.until_now());
   ledger.add("constraints", Ledger::Kind::work, boundary.constraint_work.until_now());
   ledger.add("multipliers", Ledger::Kind::work, tie.work.until_now());

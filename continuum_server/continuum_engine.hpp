@@ -30,9 +30,11 @@ class ContinuumEngine : public engine::Engine {
   /// no sense, inverted element.
   void prepare() override;
   double stable_step() override;
-  /// PhysicsError at measured steps: a velocity that is not finite, an element turned inside out. A new set of
+  /// PhysicsError: a velocity that is not finite; at measured steps an element turned inside out. A new set of
   /// constraints or dashpots takes effect with prepare(), stable_step() or a new step size.
   bool step(const engine::StepContext& context, engine::Exchange& exchange) override;
+  /// PhysicsError: a velocity that is not finite, an element turned inside out at any of its eight corners.
+  void check_health() const override;
 
   engine::Ledger ledger() const override;
   std::vector<engine::NamedCount> counters() const override;
@@ -59,8 +61,8 @@ class ContinuumEngine : public engine::Engine {
 
   // parts of a step
   void adapt(const engine::StepContext& context);
+  void book_step_change(double dt);
   void measure_stored_energy();
-  void check_health() const;
 
   Corners corners_now(std::size_t element) const;
   std::vector<double> centre_strains() const;
@@ -80,6 +82,8 @@ class ContinuumEngine : public engine::Engine {
 
   // at t_n of the last measured step, J
   double kinetic_ = 0.0, elastic_ = 0.0, gravity_ = 0.0;
+  double past_step_ = 0.0;    ///< of the last drift, s; 0: none since the velocities were set
+  double step_change_ = 0.0;  ///< lost where the step changed, J; see book_step_change
 };
 
 }  // namespace gabion::continuum

@@ -1,5 +1,6 @@
 // ContinuumEngine's state as fields, hash and checkpoint.
 
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <map>
@@ -21,7 +22,7 @@ std::vector<double> components(const VecField& field) {
   return values;
 }
 
-constexpr std::uint64_t blob_kind = 0x31304d554e49544eull;  // "NTINUM01"
+constexpr std::uint64_t blob_kind = 0x32304d554e49544eull;  // "NTINUM02"
 
 /// Appends to, or reads from, a blob; one list of members serves both.
 class Writer {
@@ -123,6 +124,10 @@ void ContinuumEngine::set_field(const std::string& name, std::span<const double>
     throw RequestError("SET_FIELD.values",
                        std::to_string(values.size()) + " numbers for " + std::to_string(motion.size()) + " nodes",
                        "three a node");
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (!std::isfinite(values[k]))
+      throw RequestError("SET_FIELD.values", "value of node " + std::to_string(k / 3) + " is not finite", "send finite numbers");
+  past_step_ = 0.0;
   for (std::size_t n = 0; n < motion.size(); ++n)
     (*found->second)[n] = engine::vec(values[3 * n], values[3 * n + 1], values[3 * n + 2]);
 }
@@ -162,6 +167,8 @@ std::vector<std::uint8_t> ContinuumEngine::checkpoint() const {
   write(kinetic_);
   write(elastic_);
   write(gravity_);
+  write(past_step_);
+  write(step_change_);
   return std::move(write.blob);
 }
 
@@ -186,6 +193,8 @@ void ContinuumEngine::restore(std::span<const std::uint8_t> blob) {
   read(kinetic_);
   read(elastic_);
   read(gravity_);
+  read(past_step_);
+  read(step_change_);
   if (!read.at_end())
     throw RequestError("RESTORE.blob", "the state is too long", "take it from an engine set up the same way");
 }

@@ -29,6 +29,7 @@ void interrupt(int) { interrupted = 1; }
 struct Arguments {
   std::string scene, out, dem, continuum, token_file, resume;
   std::vector<std::string> overrides;
+  double io_timeout = std::chrono::duration<double>(coupler::EngineLink::default_patience).count();  // s
   bool check = false, overwrite = false, json = false, laboratory = false;
 };
 
@@ -73,10 +74,11 @@ int run(const Arguments& arguments) {
     throw protocol::AddressError("--continuum: the same address as --dem, " + arguments.dem + "; each engine has a port of its own");
   coupler::Activity activity;
   std::unique_ptr<coupler::EngineLink> dem, continuum;
+  const std::chrono::milliseconds patience(static_cast<std::int64_t>(1e3 * arguments.io_timeout));
   if (!arguments.dem.empty())
-    dem = std::make_unique<coupler::EngineLink>("dem", protocol::parse_address(arguments.dem), token, read.hash_text, activity);
+    dem = std::make_unique<coupler::EngineLink>("dem", protocol::parse_address(arguments.dem), token, read.hash_text, activity, patience);
   if (!arguments.continuum.empty() && mesh)
-    continuum = std::make_unique<coupler::EngineLink>("continuum", protocol::parse_address(arguments.continuum), token, read.hash_text, activity);
+    continuum = std::make_unique<coupler::EngineLink>("continuum", protocol::parse_address(arguments.continuum), token, read.hash_text, activity, patience);
 
   using Existing = coupler::RunFolder::Existing;
   coupler::RunFolder folder(arguments.out, arguments.overwrite ? Existing::replace : Existing::refuse);
@@ -121,6 +123,8 @@ int main(int argc, char** argv) {
   app.add_option("--dem", arguments.dem, "HOST:PORT of the dem_server");
   app.add_option("--continuum", arguments.continuum, "HOST:PORT of the continuum_server");
   app.add_option("--token-file", arguments.token_file, "file with the run's token (default: environment variable GABION_TOKEN)");
+  app.add_option("--io-timeout", arguments.io_timeout, "seconds that an engine may be silent within a step or a request")
+      ->check(CLI::Range(0.1, 1e6));
   app.add_option("--resume", arguments.resume, "run folder, or checkpoint in it, to go on from; results go to --out");
   app.add_flag("--check", arguments.check, "only check the scene");
   app.add_flag("--json", arguments.json, "with --check: print what the scene needs as JSON");

@@ -197,6 +197,10 @@ double Block::gravity_energy(Vec gravity) const {
   return -mass_ * dot(gravity, now.displacement);
 }
 
+double Block::power_before(Vec gravity) const {
+  return dot(force_ + splat(mass_) * gravity, old_velocity_) + (rotates_ ? dot(torque_, old_spin_) : 0.0);
+}
+
 std::vector<double> Block::momentum() const {
   const Vec linear = splat(mass_) * now.velocity;
   const Vec angular = cross(position(), linear) + now.momentum;

@@ -57,6 +57,7 @@ class Block {
   /// As engine::Motion::momentum, for this body.
   std::vector<double> momentum() const;
   double gravity_energy(Vec gravity) const;  ///< -M g.(x - x0), J
+  double power_before(Vec gravity) const;    ///< of contacts and gravity on the velocity before the kick, W
 
   /// Springs for the stable step of the grains, and what the block itself has, see Spectra:
   /// |g - b|^2 <= (1 + split)|g|^2 + (1 + 1/split)|b|^2 decouples the two on the safe side.

@@ -137,9 +137,9 @@ void Clumps::move_members(std::size_t b, engine::Motion& motion, Rotation& rotat
 }
 
 void Clumps::drift(const engine::StepContext& context, engine::Motion& motion) {
-  if (motion.measured && context.damping > 0.0) {
+  if (motion.measured) {  // always: the second half of the last damped step is still to be added
     double first = 0.0, second = 0.0;
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
+    for (std::size_t b = 0; context.damping > 0.0 && b < bodies.size(); ++b) {
       const Step& s = step_[b];
       first += dot(s.damping_force, s.old_velocity) + dot(s.damping_torque, s.old_spin);
       second += dot(s.damping_force, bodies[b].velocity) + dot(s.damping_torque, bodies[b].spin);

@@ -87,6 +87,8 @@ class DemEngine : public engine::Engine {
   std::vector<std::uint8_t> checkpoint() const override;
   void restore(std::span<const std::uint8_t> blob) override;
 
+  void check_health() const override { check_motion(); }
+
   // For tests, the packing and the session
 
   static std::vector<std::string> field_names();
@@ -135,6 +137,7 @@ class DemEngine : public engine::Engine {
   void surface_forces();
   void contact_forces(std::size_t first, std::size_t last);
   std::size_t interface_limit() const;
+  void book_step_change(double dt);
   void drift(const engine::StepContext& context);
   void finish_last_step();
 
@@ -173,6 +176,7 @@ class DemEngine : public engine::Engine {
   std::uint64_t steps_ = 0, rebuilds_ = 0, fast_ = 0;
   std::vector<std::int32_t> lost_;        ///< grains that left the domain, ascending
   double elastic_ = 0.0, gravity_ = 0.0;  ///< at t_n of the last measured step, J
+  double step_change_ = 0.0;              ///< lost where the step changed, J; see book_step_change
   engine::Ledger ledger_;
 };
 

@@ -48,6 +48,7 @@ void DemEngine::close_ledger() {
   ledger_.add("damping", Ledger::Kind::lost, -damped);
   ledger_.add("dashpots", Ledger::Kind::lost, -motion.dashpot_work.until_now());
   ledger_.add("sponge", Ledger::Kind::lost, -sponge_.work.until_now());
+  ledger_.add("step_change", Ledger::Kind::lost, step_change_);
   ledger_.add("loads", Ledger::Kind::work, boundary.load_work.until_now());
   ledger_.add("constraints", Ledger::Kind::work, boundary.constraint_work.until_now());
   ledger_.add("multipliers", Ledger::Kind::work, tie.work.until_now());

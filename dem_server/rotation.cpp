@@ -1,5 +1,7 @@
 #include "dem_server/rotation.hpp"
 
+#include <algorithm>
+
 namespace gabion::dem {
 namespace {
 
@@ -45,23 +47,42 @@ void Rotation::trial(const engine::StepContext& context) {
 }
 
 void Rotation::drift(const engine::StepContext& context) {
-  if (measured && context.damping > 0.0) {
+  if (measured) {  // always: the second half of the last damped step is still to be added
     double first = 0.0, second = 0.0;
-    for (std::size_t i = 0; i < size(); ++i) {
+    for (std::size_t i = 0; context.damping > 0.0 && i < size(); ++i) {
       first += dot(damping_torque[i], old_spin[i]);
       second += dot(damping_torque[i], spin[i]);
     }
     damping_work.add(0.5 * context.dt * first, 0.5 * context.dt * second);
   }
   const Vec dt = splat(context.dt);
-#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-  for (std::size_t i = 0; i < size(); ++i) angle[i] += dt * spin[i];
+  // as in Motion::drift
+  constexpr std::size_t block = 512;
+  const std::size_t blocks = (size() + block - 1) / block;
+  bool sound = true;
+#pragma omp parallel for schedule(static) reduction(&& : sound) num_threads(threads) if (threads > 1)
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t last = std::min(size(), (b + 1) * block);
+    Vec nothing{};
+    for (std::size_t i = b * block; i < last; ++i) {
+      angle[i] += dt * spin[i];
+      nothing += splat(0.0) * spin[i];
+    }
+    sound = sound && sum(nothing) == 0.0;
+  }
+  finite = sound;
 }
 
 double Rotation::kinetic_energy() const {
   double twice = 0.0;
   for (std::size_t i = 0; i < old_spin.size(); ++i) twice += inertia[i] * dot(old_spin[i], spin[i]);
   return 0.5 * twice;
+}
+
+double Rotation::power_before() const {
+  double power = 0.0;
+  for (std::size_t i = 0; i < old_spin.size(); ++i) power += dot(torque[i], old_spin[i]);
+  return power;
 }
 
 Vec Rotation::momentum() const {

@@ -21,6 +21,7 @@ struct Rotation {
   VecField old_spin;             ///< omega(n-1/2); kept only when measured
   VecField damping_torque;       ///< kept only when measured, N m
   bool measured = false;
+  bool finite = true;            ///< of the spins in the last drift
   int threads = 1;
   engine::Work damping_work;  ///< J
 
@@ -30,11 +31,13 @@ struct Rotation {
   void set_measured(bool on);
 
   void trial(const engine::StepContext& context);
-  /// Books the work of damping, then turns.
+  /// Books the work of damping, then turns; says in finite whether each spin is a number.
   void drift(const engine::StepContext& context);
 
   /// sum of 1/2 omega(n-1/2) I omega(n+1/2), J; needs measured.
   double kinetic_energy() const;
+  /// sum of T_n . omega(n-1/2), W; needs measured, before the drift.
+  double power_before() const;
   /// sum of I omega, kg m2/s.
   Vec momentum() const;
 };

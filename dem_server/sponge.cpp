@@ -86,7 +86,7 @@ void Sponge::absorb(engine::Motion& motion) {
 }
 
 void Sponge::book(const engine::Motion& motion) {
-  if (grains_.empty() || !motion.measured) return;
+  if (!motion.measured) return;  // without grains too: the second half of the last step is still to be added
   double first = 0.0, second = 0.0;
   for (std::size_t p = 0; p < grains_.size(); ++p) {
     first += dot(impulse_[p], motion.old_velocity[grains_[p]]);

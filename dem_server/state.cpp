@@ -32,7 +32,7 @@ struct EngineState {
     std::uint64_t grouping = e.clumps_.grouping_key();
     all(grouping, e.clumps_.bodies, e.clumps_.damping_work);
     if (grouping != e.clumps_.grouping_key()) throw std::out_of_range("it is of other clumps");
-    all(e.displacement_at_build_, e.past_step_, e.steps_, e.rebuilds_, e.fast_, e.lost_);
+    all(e.step_change_, e.displacement_at_build_, e.past_step_, e.steps_, e.rebuilds_, e.fast_, e.lost_);
   }
 };
 
@@ -40,7 +40,7 @@ namespace {
 
 /// What must agree between the engine that wrote a state and the one that reads it.
 struct StateHeader {
-  char magic[8] = {'g', 'a', 'b', 'd', 'e', 'm', '0', '2'};
+  char magic[8] = {'g', 'a', 'b', 'd', 'e', 'm', '0', '3'};
   std::uint64_t grains = 0, walls = 0;
   std::uint8_t frozen = 0, rotating = 0, block = 0, law = 0, rolling = 0, damped = 0;
   std::uint8_t padding[2] = {};

@@ -37,13 +37,13 @@ std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& d
     ++side;
   }
   if (!started_) first_ = balance;
-  if (started_ && new_stage_) first_ += balance - previous_;
+  if (started_ && new_body_) first_ += balance - previous_;
   started_ = true;
-  new_stage_ = false;
+  new_body_ = false;
   previous_ = balance;
   lost_ = lost;
   scale_ = std::max({scale_, moved, lost});
-  drift_ = std::max(drift_, std::fabs(balance - first_));
+  drift_ = std::isfinite(balance) ? std::max(drift_, std::fabs(balance - first_)) : INFINITY;
   error_ = scale_ > 0.0 ? drift_ / scale_ : 0.0;
   const double larger = std::max(std::fabs(tie_work[0]), std::fabs(tie_work[1]));
   if (larger > 0.0) residual_ = std::fabs(tie_work[0] + tie_work[1]) / larger;
@@ -55,7 +55,7 @@ std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& d
 
 nlohmann::json EnergyBalance::state() const {
   return {{"first", first_}, {"error", error_}, {"residual", residual_}, {"scale", scale_}, {"lost", lost_}, {"drift", drift_},
-          {"previous", previous_}, {"started", started_}, {"new_stage", new_stage_}};
+          {"previous", previous_}, {"started", started_}, {"new_body", new_body_}};
 }
 
 void EnergyBalance::restore(const nlohmann::json& state) {
@@ -67,7 +67,7 @@ void EnergyBalance::restore(const nlohmann::json& state) {
   drift_ = state.at("drift");
   previous_ = state.at("previous");
   started_ = state.at("started");
-  new_stage_ = state.at("new_stage");
+  new_body_ = state.at("new_body");
 }
 
 }  // namespace gabion::coupler

@@ -18,12 +18,12 @@ class EnergyBalance {
   /// Columns of energy.csv after the time, once the first reports are in.
   std::vector<std::string> columns() const { return columns_; }
   /// Adds a measurement and returns the row for energy.csv (without time): both ledgers, the balance, and how far it is
-  /// from what it was at the stage's first measurement, errors of earlier stages included.
+  /// from what it was at the first measurement, or since a body was added.
   std::vector<double> add(const std::optional<protocol::RunDone>& dem, const std::optional<protocol::RunDone>& continuum);
 
-  /// The next measurement starts a new stage: a block set free, faces let go and the like bring energy that no ledger
-  /// entry knows; the balance is compared with itself from there on.
-  void start_stage() { new_stage_ = true; }
+  /// The next measurement has a block more: the energy that it brings is no error. What else a stage changes, its step and
+  /// its faces, is in the ledgers.
+  void body_added() { new_body_ = true; }
 
   double error() const { return error_; }                 ///< largest |balance - first| over the largest energy moved
   double multiplier_residual() const { return residual_; } ///< |work on grains + work on continuum| over the larger one
@@ -40,7 +40,7 @@ class EnergyBalance {
   std::vector<double> last_;
   double first_ = 0.0, error_ = 0.0, residual_ = 0.0, scale_ = 0.0, lost_ = 0.0, drift_ = 0.0;
   double previous_ = 0.0;
-  bool started_ = false, new_stage_ = false;
+  bool started_ = false, new_body_ = false;
 };
 
 }  // namespace gabion::coupler

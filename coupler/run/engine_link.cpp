@@ -1,5 +1,6 @@
 #include "coupler/run/engine_link.hpp"
 
+#include <algorithm>
 #include <thread>
 
 namespace gabion::coupler {
@@ -19,11 +20,12 @@ protocol::ConnectionOptions connection_options() {
 }  // namespace
 
 EngineLink::EngineLink(const std::string& role, const protocol::Address& address, const std::string& token,
-                       const std::string& scene_hash, const Activity& activity)
+                       const std::string& scene_hash, const Activity& activity, std::chrono::milliseconds patience)
     : role_(role),
       connection_(protocol::Connection::connect(address.host, address.port, connect_deadline, role + "_server",
                                                 connection_options())),
       activity_(activity),
+      patience_(patience),
       heartbeats_(connection_, [this] { return present(); }, heartbeat_period) {
   protocol::Hello hello;
   hello.protocol_version = protocol::protocol_version;
@@ -32,7 +34,7 @@ EngineLink::EngineLink(const std::string& role, const protocol::Address& address
   hello.scene_hash = scene_hash;
   hello.software = "gabion coupler";
   connection_.send(hello);
-  const auto welcome = connection_.expect<protocol::Welcome>(greeting_deadline);
+  const auto welcome = connection_.expect<protocol::Welcome>(std::min<std::chrono::milliseconds>(greeting_deadline, patience_));
   if (welcome.role != role)
     throw protocol::AddressError("the engine at " + address.host + ":" + std::to_string(address.port) + " is '" + welcome.role +
                                   "', but '" + role + "' was wanted: swap --dem and --continuum");
@@ -49,7 +51,7 @@ protocol::Heartbeat EngineLink::present() const {
 
 std::span<const double> EngineLink::receive_gap(std::size_t slots, std::uint64_t step) {
   gap_.resize(3 * slots);
-  connection_.receive_gap(gap_, step, step_deadline);
+  connection_.receive_gap(gap_, step, patience_);
   return gap_;
 }
 

@@ -18,8 +18,9 @@ class EngineLink {
  public:
   /// Connects and greets. role: dem or continuum. Throws the protocol's exceptions, which name the engine, and
   /// protocol::AddressError when it plays another role. activity outlives the link.
+  /// patience: how long an engine may be silent in a step or a request; starts anew with every heartbeat.
   EngineLink(const std::string& role, const protocol::Address& address, const std::string& token,
-             const std::string& scene_hash, const Activity& activity);
+             const std::string& scene_hash, const Activity& activity, std::chrono::milliseconds patience = default_patience);
 
   const std::string& role() const { return role_; }
 
@@ -28,7 +29,7 @@ class EngineLink {
   Reply ask(const Request& request) {
     const UnderWay under_way(*this);
     connection_.send(request);
-    return connection_.expect<Reply>(reply_deadline);
+    return connection_.expect<Reply>(patience_);
   }
   /// Sends a request that is answered by OK.
   template <class Request>
@@ -48,7 +49,7 @@ class EngineLink {
   }
   protocol::RunDone finish() {
     const UnderWay under_way(*this);
-    return connection_.expect<protocol::RunDone>(reply_deadline);
+    return connection_.expect<protocol::RunDone>(patience_);
   }
 
   std::vector<double> fetch(const std::string& field);
@@ -62,8 +63,7 @@ class EngineLink {
 
   static constexpr std::chrono::seconds connect_deadline{10};
   static constexpr std::chrono::seconds greeting_deadline{5};
-  static constexpr std::chrono::seconds reply_deadline{20};  ///< starts anew with every heartbeat
-  static constexpr std::chrono::seconds step_deadline{20};
+  static constexpr std::chrono::milliseconds default_patience{20000};
   static constexpr std::chrono::seconds heartbeat_period{1};
 
  private:
@@ -82,6 +82,7 @@ class EngineLink {
   std::string role_;
   protocol::Connection connection_;
   const Activity& activity_;
+  std::chrono::milliseconds patience_;
   std::atomic<std::uint64_t> next_step_{0};
   protocol::Heartbeats heartbeats_;  ///< after what it uses
   std::vector<double> gap_;

@@ -24,6 +24,7 @@ class InterfaceTie {
 
   std::size_t slots() const { return rows_.slots; }
   const InterfaceRows& rows() const { return rows_; }
+  const Point& scene_origin() const { return scene_.origin; }
   const InterfaceReport& report() const { return multipliers_->report(); }
 
   /// Force of the multipliers on the continuum and displacement jump per row of the last step, for interface.csv.

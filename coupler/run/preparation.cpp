@@ -10,8 +10,10 @@
 
 #include "coupler/ground/loose_grains.hpp"
 #include "coupler/results/earlier_state.hpp"
+#include "coupler/scene/origin.hpp"
 #include "coupler/scene/packing_file.hpp"
 #include "coupler/run/clumps.hpp"
+#include "coupler/run/run_failed.hpp"
 #include "protocol/engine/hash.hpp"
 
 namespace gabion::coupler {
@@ -93,7 +95,10 @@ namespace {
 Packing read_packing(const scene::Scene& scene) {
   const scene::PackingFile file = scene::read_packing_file(scene.grains.file);
   Packing packing;
-  packing.position = file.position;
+  for (const Point& x : file.position) {
+    Point& local = packing.position.emplace_back();
+    for (int axis = 0; axis < 3; ++axis) local[axis] = scene::local_coordinate(x[axis], scene.origin[axis]);
+  }
   packing.radius = file.radius;
   packing.gap = scene.grains.bond_gap;
   const double grains = static_cast<double>(packing.radius.size());
@@ -225,7 +230,7 @@ Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_pac
     homogenise.box_lo = flatten(window.lo);
     homogenise.box_hi = flatten(window.hi);
     measured = dem->ask<protocol::Homogenised>(homogenise);
-    if (measured->residual > largest_homogenisation_residual)
+    if (!(measured->residual <= largest_homogenisation_residual))
       throw std::runtime_error("mesh.stiffness: the packing's stiffness could not be measured, the load cases have a residual of " +
                                std::to_string(measured->residual) + "; grains that nothing holds? Raise grains.contacts_per_grain, or give young, "
                                "poisson and bulk_density and use mesh.stiffness = material");
@@ -243,6 +248,23 @@ Elasticity obtain_elasticity(const scene::Scene& whole, const Packing& whole_pac
   return elasticity;
 }
 
+namespace {
+
+/// Multipliers divide by these: one that is no number would be found steps later, and somewhere else.
+void check_masses(const protocol::Ready& ready, const std::string& engine, const std::string& entity, std::size_t count) {
+  for (const auto* masses : {&ready.mass, &ready.plain_mass}) {
+    if (masses->size() != count)
+      throw std::runtime_error(engine + " answered PREPARE with " + std::to_string(masses->size()) + " masses for " +
+                               std::to_string(count) + " " + entity + "s");
+    for (std::size_t i = 0; i < count; ++i)
+      if (!((*masses)[i] > 0.0) || !std::isfinite((*masses)[i]))
+        throw RunFailed(engine + " gives " + entity + " " + std::to_string(i) + " the mass " + std::to_string((*masses)[i]) +
+                        " kg; expected a finite number above 0");
+  }
+}
+
+}  // namespace
+
 protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, EngineLink& dem, const Log& log) {
   dem.tell(options_of(scene));
   dem.tell(grain_materials(scene.materials));
@@ -259,6 +281,7 @@ protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, Eng
   bonds.gap = assembly.bond_gap;
   dem.ask<protocol::Bonded>(bonds);
   protocol::Ready ready = dem.ask<protocol::Ready>(protocol::Prepare{});
+  check_masses(ready, "dem_server", "grain", assembly.grains.position.size());
   assembly.grains.plain_mass = ready.plain_mass.data;
   if (clumps) {
     const std::vector<double> numbers = dem.fetch("clump");
@@ -286,7 +309,9 @@ protocol::Ready configure_continuum(const scene::Scene& scene, const Assembly& a
   mesh.material = assembly.layers.material;
   continuum.tell(mesh);
   if (assembly.zone.overlap() > 0.0) send_weights(assembly, continuum);
-  return continuum.ask<protocol::Ready>(protocol::Prepare{});
+  protocol::Ready ready = continuum.ask<protocol::Ready>(protocol::Prepare{});
+  check_masses(ready, "continuum_server", "node", assembly.mesh.nodes.size());
+  return ready;
 }
 
 namespace {

@@ -8,9 +8,11 @@ namespace gabion::coupler {
 
 namespace {
 
-std::vector<double> flat(const std::vector<Point>& points) {
+/// origin is added: results are in the user's coordinates.
+std::vector<double> flat(const std::vector<Point>& points, const Point& origin) {
   std::vector<double> values;
-  for (const Point& p : points) values.insert(values.end(), p.begin(), p.end());
+  for (const Point& p : points)
+    for (int axis = 0; axis < 3; ++axis) values.push_back(p[axis] + origin[axis]);
   return values;
 }
 
@@ -46,12 +48,12 @@ Recorder::Recorder(RunFolder& folder, const scene::Scene& scene, const Assembly&
   results_.attribute("title", scene.title);
   results_.attribute("scene", scene.name);
   if (assembly.has_grains) {
-    const std::vector<double> position = flat(assembly.grains.position);
+    const std::vector<double> position = flat(assembly.grains.position, scene.origin);
     const std::vector<std::int64_t> origin(assembly.origin.begin(), assembly.origin.end());
     results_.write_grain_geometry({position, assembly.grains.radius, assembly.material, origin, grain_weights, assembly.clump});
   }
   if (assembly.has_mesh) {
-    const std::vector<double> nodes = flat(assembly.mesh.nodes);
+    const std::vector<double> nodes = flat(assembly.mesh.nodes, scene.origin);
     std::vector<std::int32_t> elements;
     std::vector<std::uint8_t> wrap;
     for (const auto& e : assembly.mesh.elements) elements.insert(elements.end(), e.begin(), e.end());
@@ -179,7 +181,7 @@ void Recorder::reaction_row(double time, const Advance& advance) {
 }
 
 void Recorder::block_shape(const PlacedBlock& block) {
-  block_vertices_ = flat(block.vertices);
+  block_vertices_ = flat(block.vertices, scene_.origin);
   results_.write_block_geometry({block_vertices_, block.face_ptr, block.face_vertices});
 }
 
@@ -189,6 +191,7 @@ void Recorder::block_row(double time, const PlacedBlock& block, const std::vecto
   block_vertices_.assign(state.begin() + corners, state.end());
   double lowest = scene::infinity;
   for (std::size_t k = 2; k < block_vertices_.size(); k += 3) lowest = std::min(lowest, block_vertices_[k]);
+  for (std::size_t k = 0; k < block_vertices_.size(); ++k) block_vertices_[k] += scene_.origin[k % 3];
   if (!block_)
     block_ = std::make_unique<History>(folder_.history(
         "block.csv", {"time [s]", "penetration [m]", "velocity.x [m/s]", "velocity.y [m/s]", "velocity.z [m/s]", "force.x [N]", "force.y [N]",
@@ -301,7 +304,7 @@ void Recorder::interface_fields(double dt, EngineLink& continuum, const Interfac
   results_.interface_field("jump", jump, 3, "m");
 }
 
-void Recorder::interface_geometry(const InterfaceTie& tie) { results_.write_interface_geometry(flat(tie.rows().slot_position)); }
+void Recorder::interface_geometry(const InterfaceTie& tie) { results_.write_interface_geometry(flat(tie.rows().slot_position, scene_.origin)); }
 
 void Recorder::zero_displacements(EngineLink* dem, EngineLink* continuum) {
   if (dem) zeroed_grains_ = dem->fetch("displacement");

@@ -47,11 +47,11 @@ class Recorder {
     block_release_ = time;
     surface_level_ = level;
     thrown_.assign(assembly_.grains.position.size(), 0);
+    energy_.body_added();
   }
   /// Step of the last stored state.
   std::uint64_t last_state_step() const { return last_state_step_; }
 
-  void start_stage() { energy_.start_stage(); }
   /// From now on displacements of states and probes are counted from what they are at this moment.
   void zero_displacements(EngineLink* dem, EngineLink* continuum);
   const EnergyBalance& energy() const { return energy_; }

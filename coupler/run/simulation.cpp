@@ -142,8 +142,14 @@ void Simulation::place_probes() {
 
 double Simulation::stable_step() {
   double limit = scene::infinity;
-  if (dem_) limit = std::min(limit, stable_dem_ = dem_->ask<protocol::Ready>(protocol::StableStep{}).stable_step);
-  if (continuum_) limit = std::min(limit, stable_continuum_ = continuum_->ask<protocol::Ready>(protocol::StableStep{}).stable_step);
+  const auto ask = [&](EngineLink& link) {
+    const double step = link.ask<protocol::Ready>(protocol::StableStep{}).stable_step;
+    if (!(step > 0.0)) throw RunFailed(link.role() + "_server gives its stable step as " + number(step) + " s; expected a number above 0");
+    limit = std::min(limit, step);
+    return step;
+  };
+  if (dem_) stable_dem_ = ask(*dem_);
+  if (continuum_) stable_continuum_ = ask(*continuum_);
   return limit;
 }
 
@@ -214,7 +220,6 @@ void Simulation::begin_stage(std::size_t index) {
     next_output_ = scene_.output.every;
   }
   log_("stage " + stage.name + ": dt " + number(dt) + " s (stable " + number(stable_dem_) + " s grains, " + number(stable_continuum_) + " s continuum)");
-  recorder_->start_stage();
 }
 
 void Simulation::run_stage(const scene::Stage& stage) {
@@ -281,7 +286,8 @@ void Simulation::release_block() {
   block_ = placed_block(present);
   tell_block();
   recorder_->block_released(stepper_->time(), block_->surface_level);
-  log_("block: lowest corner at " + number(block_->lowest) + " m, mean surface level " + number(block_->surface_level) + " m");
+  log_("block: lowest corner at " + number(block_->lowest + scene_.origin[2]) + " m, mean surface level " +
+       number(block_->surface_level + scene_.origin[2]) + " m");
 }
 
 void Simulation::tell_block() {

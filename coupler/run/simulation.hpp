@@ -15,6 +15,7 @@
 #include "coupler/run/preparation.hpp"
 #include "coupler/run/progress.hpp"
 #include "coupler/run/recorder.hpp"
+#include "coupler/run/run_failed.hpp"
 #include "coupler/run/stepper.hpp"
 #include "coupler/run/zone_watch.hpp"
 
@@ -22,11 +23,6 @@ namespace gabion::coupler {
 
 /// The scene asks for something that cannot be run as it stands: exit code 2, with what to do.
 struct ScenarioError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// The physics went wrong: energy, unbalanced force that does not fall, too large a rotation. Exit code 3.
-struct RunFailed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 

@@ -39,6 +39,7 @@ class Stepper {
 
  private:
   void tie_one_step();
+  void check_gap(std::span<const double> gap, const EngineLink& link) const;
 
   EngineLink* dem_;
   EngineLink* continuum_;

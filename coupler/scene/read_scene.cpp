@@ -6,6 +6,7 @@
 #include "coupler/scene/checks.hpp"
 #include "coupler/scene/document.hpp"
 #include "coupler/scene/materials.hpp"
+#include "coupler/scene/origin.hpp"
 #include "coupler/scene/packing_file.hpp"
 #include "coupler/scene/schema.hpp"
 #include "coupler/scene/units.hpp"
@@ -110,6 +111,7 @@ ReadResult read_scene_text(const std::string& text, const std::string& label, co
   ReadResult result;
   result.scene = build_scene(values, std::filesystem::path(label).stem().string());
   const Json effective = write_by_schema(values);
+  count_from_origin(result.scene);
   Checker checker(result.scene, document, effective);
   check_space(checker);
   check_choices(checker);

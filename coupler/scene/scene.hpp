@@ -205,6 +205,7 @@ struct Scene {
   std::string name;  ///< file name without folder and ending
   Model model = Model::bridging;
   Point gravity{};
+  Point origin{};  ///< m; every coordinate here and on the wire counts from it, those of the results do not
   Ground ground;
   std::vector<Fill> fills;
   std::vector<Material> materials;  ///< those that ground and fills use

@@ -110,6 +110,7 @@ void Boundary::book(const Motion& motion, const StepContext& context) {
       second += dot(f, motion.velocity[load.entities[k]]);
     }
   }
+  load_power_before_ = first;
   load_work.add(0.5 * context.dt * first, 0.5 * context.dt * second);
 }
 

@@ -62,6 +62,9 @@ class Boundary {
   const std::vector<Constraint>& constraints() const { return constraints_; }
   bool rotations_locked(std::size_t group) const { return (constraints_[group].components & 8) != 0; }
 
+  /// sum of F_n . v(n-1/2) over the loads of the last step that was booked, W.
+  double load_power_before() const { return load_power_before_; }
+
   Work load_work;        ///< J
   Work constraint_work;  ///< J
 
@@ -70,6 +73,7 @@ class Boundary {
   std::vector<Load> loads_;
   std::vector<Dashpot> dashpots_;
   std::vector<double> reactions_;
+  double load_power_before_ = 0.0;
 };
 
 }  // namespace gabion::engine

@@ -110,6 +110,9 @@ class Engine {
   /// One step of the algorithm; false when the coupler asked to stop after it.
   virtual bool step(const StepContext& context, Exchange& exchange) = 0;
 
+  /// PhysicsError with the entity where the state cannot go on; asked at the end of each run.
+  virtual void check_health() const {}
+
   /// Linear momentum (3), angular momentum about the origin (3), sum of m |v| (1), weighted masses, kg m/s.
   virtual std::vector<double> momentum() const { return motion.momentum(); }
   /// Energies at the last step that was measured.

@@ -11,7 +11,7 @@ namespace gabion::engine {
 struct Ledger {
   enum class Kind { stored, lost, work };
   struct Entry {
-    std::string name;  ///< kinetic, elastic, gravity, friction, rolling, contact_damping, broken_bonds, damping, dashpots, sponge, loads, constraints, multipliers
+    std::string name;  ///< kinetic, elastic, gravity, friction, rolling, contact_damping, broken_bonds, switching, damping, dashpots, sponge, step_change, loads, constraints, multipliers
     Kind kind;
     double energy;  ///< J
   };

@@ -60,9 +60,10 @@ void Motion::trial(std::size_t first, std::size_t last, const StepContext& conte
 
 void Motion::drift(const StepContext& context) {
   const Vec dt = splat(context.dt);
-  if (measured && (context.damping > 0.0 || !viscosity.empty())) {
+  if (measured) {  // always: the second half of the last damped step is still to be added
     double first = 0, second = 0, first_viscous = 0, second_viscous = 0;
-    for (std::size_t i = 0; i < size(); ++i) {
+    const bool lossy = context.damping > 0.0 || !viscosity.empty();
+    for (std::size_t i = 0; lossy && i < size(); ++i) {
       const Vec v0 = old_velocity[i], v1 = velocity[i];
       if (context.damping > 0.0) {
         first += dot(damping_force[i], v0);
@@ -77,14 +78,33 @@ void Motion::drift(const StepContext& context) {
     damping_work.add(0.5 * context.dt * first, 0.5 * context.dt * second);
     dashpot_work.add(0.5 * context.dt * first_viscous, 0.5 * context.dt * second_viscous);
   }
-#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-  for (std::size_t i = 0; i < size(); ++i) displacement[i] += dt * velocity[i];
+  // 0 v is 0, or not a number where v is none: one sum tells for a block of points
+  constexpr std::size_t block = 512;
+  const std::size_t blocks = (size() + block - 1) / block;
+  bool sound = true;
+#pragma omp parallel for schedule(static) reduction(&& : sound) num_threads(threads) if (threads > 1)
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t last = std::min(size(), (b + 1) * block);
+    Vec nothing{};
+    for (std::size_t i = b * block; i < last; ++i) {
+      displacement[i] += dt * velocity[i];
+      nothing += splat(0.0) * velocity[i];
+    }
+    sound = sound && sum(nothing) == 0.0;
+  }
+  finite = sound;
 }
 
 double Motion::kinetic_energy() const {
   double twice = 0.0;
   for (std::size_t i = 0; i < size(); ++i) twice += mass[i] * dot(old_velocity[i], velocity[i]);
   return 0.5 * twice;
+}
+
+double Motion::power_before() const {
+  double power = 0.0;
+  for (std::size_t i = 0; i < size(); ++i) power += dot(force[i], old_velocity[i]);
+  return power;
 }
 
 std::vector<double> Motion::momentum() const {

@@ -61,6 +61,7 @@ struct Motion {
   VecField damping_force;  ///< local damping force at t_n, N
 
   bool measured = false;
+  bool finite = true;  ///< of the velocities in the last drift
   int threads = 1;
   Work damping_work;  ///< of local damping (negative or zero), J
   Work dashpot_work;  ///< of dashpots (negative or zero), J
@@ -76,11 +77,14 @@ struct Motion {
   /// velocity := trial velocity of points [first, last). Prescribed components are left alone.
   void trial(std::size_t first, std::size_t last, const StepContext& context);
 
-  /// u += dt v for all points; with the ledger on, books the work of damping and dashpots first.
+  /// u += dt v for all points, and says in finite whether each v is a number; with the ledger on, books the work of
+  /// damping and dashpots first.
   void drift(const StepContext& context);
 
   /// sum of 1/2 v(n-1/2) m v(n+1/2), J; needs measured.
   double kinetic_energy() const;
+  /// sum of f_n . v(n-1/2), W; needs measured, before the drift.
+  double power_before() const;
 
   /// Linear momentum (3), angular momentum about the origin (3), sum of m |v| (1).
   std::vector<double> momentum() const;

@@ -77,6 +77,7 @@ RunDone Service::summary(const Run& request, std::uint64_t taken, bool measured)
   RunDone done;
   done.step = request.first_step + taken;
   done.time = request.time + static_cast<double>(taken) * request.dt;
+  engine_.check_health();
   done.largest_speed = engine_.motion.largest_speed();
   if (!std::isfinite(done.largest_speed))
     throw engine::PhysicsError("velocity", "a velocity is not finite", "take a smaller step");

@@ -6,17 +6,21 @@ import tempfile
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-from gabion_tools import build
+from gabion_tools import build, hard
 from gabion_tools.places import BUILD
 
 
 def arguments(parser):
     parser.add_argument("--yes", action="store_true", help="install missing packages without asking")
     parser.add_argument("--filter", metavar="REGEX", help="only tests whose name matches")
+    parser.add_argument("--hard", action="store_true", help="the hard cases of docs/hard_cases.md, one line each with its figures")
+    parser.add_argument("--page", action="store_true", help="with --hard: write the figures into docs/hard_cases.md")
 
 
 def main(options):
     build.ensure(options.yes, everything=True)
+    if options.hard:
+        return hard_cases(options.page)
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "tests.xml"
         command = ["ctest", "--test-dir", str(BUILD), "-j", "2", "--output-on-failure", "--no-tests=error",
@@ -27,6 +31,14 @@ def main(options):
         passed, failed, skipped = count(report)
     print(f"{passed} passed, {failed} failed" + (f", {skipped} skipped" if skipped else ""))
     return 0 if code == 0 and failed == 0 and passed > 0 else 1
+
+
+def hard_cases(page):
+    outcomes = hard.run_all()
+    hard.print_table(outcomes)
+    if page:
+        hard.write_page(outcomes)
+    return 0 if all(outcome.passed for outcome in outcomes) else 1
 
 
 def count(report):

@@ -3,6 +3,7 @@
 
 #include "continuum_server/stable_step.hpp"
 #include "solid_fixture.hpp"
+#include "tests/figure.hpp"
 
 using namespace gabion::continuum;
 namespace engine = gabion::engine;
@@ -88,12 +89,15 @@ TEST_CASE("a free cube at nu 0.45 stays bounded at 0.99 of the step and does not
   solid.set_noise(solid.engine.motion.velocity, 1e-3);
   solid.run(1, 0.99 * limit);
   const double energy = solid.engine.ledger().balance();
+  double drift = 0.0;
   for (int part = 0; part < 10; ++part) {
     solid.run(10000, 0.99 * limit);
+    drift = std::max(drift, std::fabs(solid.engine.ledger().balance() / energy - 1.0));
     // near the limit the discrete energy of the highest mode is a small difference of large terms
     CHECK(solid.engine.ledger().balance() == Approx(energy).epsilon(1e-10));
     CHECK(solid.engine.motion.largest_speed() < 0.1);
   }
+  gabion::figure("free_cube_drift", drift);
   CHECK_THROWS_AS(solid.run(100000, 1.01 * limit), engine::PhysicsError);
 }
 

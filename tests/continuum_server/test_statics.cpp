@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "solid_fixture.hpp"
+#include "tests/figure.hpp"
 
 using namespace gabion::continuum;
 namespace engine = gabion::engine;
@@ -171,6 +172,7 @@ TEST_CASE("no volumetric locking: thick cylinder in plane strain") {
   const double found = Cylinder(poisson).solve();
   CAPTURE(poisson, found / expected);
   CHECK(found == Approx(expected).epsilon(0.01));
+  gabion::figure("cylinder_error", std::fabs(found / expected - 1.0));
 }
 
 TEST_CASE("no shear locking: cantilever under its own weight") {
@@ -186,4 +188,5 @@ TEST_CASE("no shear locking: cantilever under its own weight") {
   for (const std::int32_t n : end) tip -= solid.engine.motion.displacement[n][2] / static_cast<double>(end.size());
   CAPTURE(tip / 1.4818e-3);
   CHECK(tip == Approx(1.4818e-3).epsilon(0.01));
+  gabion::figure("cantilever_error", std::fabs(tip / 1.4818e-3 - 1.0));
 }

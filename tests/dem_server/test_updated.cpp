@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "fixture.hpp"
+#include "tests/figure.hpp"
 
 using namespace gabion::dem;
 using namespace gabion::dem::testing;
@@ -40,6 +41,10 @@ TEST_CASE("contact history survives rebuilds: every step or hardly ever") {
   CHECK(often.count("broken") == seldom.count("broken"));
   CHECK(often.engine.state_hash() == seldom.engine.state_hash());
   CHECK(often.energy("friction") == Approx(seldom.energy("friction")).epsilon(1e-12));
+  double difference = 0.0;
+  for (std::size_t i = 0; i < often.engine.motion.size(); ++i)
+    difference = std::max(difference, norm(often.engine.motion.displacement[i] - seldom.engine.motion.displacement[i]));
+  gabion::figure("rebuild_difference", difference);
 }
 
 TEST_CASE("the energy balance closes while bonds break and contacts slide") {
@@ -208,6 +213,7 @@ TEST_CASE("a small grain between two large ones holds by friction up to its cone
       scene.step(dt, 10, 0.6);
       fall = -scene.engine.motion.displacement[1][2];
     }
+    gabion::figure(share < 1.0 ? "held_fall" : "beyond_fall", fall / r);
     if (share < 1.0)
       CHECK(fall < 0.05 * r);
     else

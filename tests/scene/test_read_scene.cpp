@@ -2,6 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
+#include <sstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -328,4 +330,37 @@ TEST_CASE("the validator is a second opinion on structure") {
   scene = Json::parse(tiny().effective);
   scene.erase("stages");
   CHECK(complaints(scene.dump()) > 0);
+}
+
+TEST_CASE("a scene far away counts from an origin of its own") {
+  const Scene near = tiny().scene;
+  CHECK(near.origin == Point{});
+  const auto moved = [](const std::string& by, int axis) {
+    const auto at = [&](double x, double y, double z) {
+      std::string text = "[";
+      const double values[] = {x, y, z};
+      for (int a = 0; a < 3; ++a) {
+        std::ostringstream number;
+        number << std::setprecision(16) << (a == axis ? std::stod(by) : 0.0) + values[a];
+        text += (a ? ", \"" : "\"") + number.str() + " m\"";
+      }
+      return text + "]";
+    };
+    return tiny({"ground.box=[" + at(0, 0, 0) + "," + at(0.8, 0.8, 2.4) + "]",
+                 "coupling.bridging.zone=[" + at(0, 0, 0) + "," + at(0.8, 0.8, 1.6) + "]", "probes[0].at=" + at(0.4, 0.4, 2.4),
+                 "probes[1].at=" + at(0.4, 0.4, 1.2)});
+  };
+  for (const int axis : {0, 1, 2})
+    for (const double by : {1e6, -1e6, 3e5}) {
+      CAPTURE(axis, by);
+      const ReadResult far = moved(std::to_string(by), axis);
+      CHECK(far.scene.origin[axis] == by);
+      CHECK(far.scene.ground.box.hi == near.ground.box.hi);  // the same bits
+      CHECK(far.scene.grains.zone->hi == near.grains.zone->hi);
+      CHECK(far.scene.probes[0].at == near.probes[0].at);
+      CHECK(far.effective.find(std::to_string(std::lround(by)).substr(0, 3)) != std::string::npos);  // as the user wrote it
+    }
+  // near the origin nothing changes, whatever the place
+  CHECK(moved("7.3", 0).scene.origin == Point{});
+  CHECK(moved("7.3", 0).scene.ground.box.lo[0] == 7.3);
 }

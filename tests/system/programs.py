@@ -40,6 +40,11 @@ def environment(token):
     return kept | ({"GABION_TOKEN": token} if token is not None else {})
 
 
+def figure(name, value):
+    """A measured figure, for `gabion test --hard`; on a line of its own, whatever unittest has written before."""
+    print(f"\nfigure {name} {value:.6g}", flush=True)
+
+
 class Ended:
     """Exit status and output of a program."""
 

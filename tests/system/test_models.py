@@ -7,7 +7,7 @@ import unittest
 import h5py
 import numpy
 
-from programs import SCENARIOS, SystemTest
+from programs import SCENARIOS, SystemTest, figure
 
 MODELS = ("dem", "continuum", "bridging", "edge")
 ALWAYS = ("summary.json", "scene.effective.json", "run.log", "monitor.csv", "energy.csv", "probes.csv", "reactions.csv",
@@ -137,6 +137,7 @@ class Models(SystemTest):
         self.assertEqual((sound["warnings"], sound["interface"]["largest_damaged_share"]), ([], 0))
         weak = self.run_scene("tiny.json", "ground.material=seed_gravel", "faces.zmax.pressure.half_sine.amplitude=300 kPa", out="weak")
         self.assertGreater(weak["interface"]["largest_damaged_share"], 0.01)
+        figure("damaged_share", weak["interface"]["largest_damaged_share"])
         self.assertIn("slid or broke", weak["warnings"][0])
 
     def test_two_stages_follow_one_another(self):

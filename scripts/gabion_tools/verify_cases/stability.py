@@ -5,7 +5,12 @@ exponentially within a few hundred steps. Stable: the balance of energy, which e
 linear system, stays within 1e-9 for 20 000 steps.
 """
 
+import json
+import math
+
 import numpy as np
+
+from gabion_tools import drawing
 
 TITLE = "coupled runs at 0.98 of the uncoupled stable step, each choice of rows, weights' floor 0.01 and 0.001"
 
@@ -40,3 +45,19 @@ def run(context):
             worst = max(worst, drift)
             yield context.figure(f"energy drift at 0.98, {name}, {packing}", drift, "", "<= 1e-9")
     yield context.figure("stable_at_098_worst_drift", worst, "", "<= 1e-9")
+    if context.full:
+        yield from stability_map(context)
+
+
+def stability_map(context):
+    """Where the coupled step is really stable: bisection on columns and packings, see docs/hard_cases.md."""
+    lines = context.json_lines("bench_stability", timeout=1800)
+    context.root.mkdir(parents=True, exist_ok=True)
+    written = context.root / "stability_map.jsonl"
+    written.write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
+    drawing.call("stability_plot", written, written.with_suffix(".png"))
+    for kind in ("overlap", "edge", "contrast", "random"):
+        least = min(line["fraction"] for line in lines if line["map"] == kind)
+        yield context.figure(f"least stable step over the uncoupled one, map {kind}", least, "", ">= 0.995")
+    least = min(line["fraction"] * math.sqrt(1.0 + line["damping"]) for line in lines if line["map"] == "damping")
+    yield context.figure("least stable step over the damped one, map damping", least, "", ">= 0.995")
