@@ -19,6 +19,7 @@ Vec magnitude(Vec a) { return a > Vec{} ? a : -a; }
 
 void Motion::resize(std::size_t n, bool measure_energy) {
   measured = measure_energy;
+  tiers.clear();
   for (VecField* field : {&position, &displacement, &velocity, &force, &tie_force, &mobility})
     field->assign(n, Vec{});
   freedom.assign(n, vec(1, 1, 1));
@@ -30,7 +31,12 @@ void Motion::resize(std::size_t n, bool measure_energy) {
 }
 
 void Motion::set_step(double dt) {
-  for (std::size_t i = 0; i < size(); ++i) {
+  if (tiers.empty()) set_step(dt, 0, size());
+  for (const Tier& tier : tiers) set_step(static_cast<double>(tier.rate) * dt, tier.first, tier.last);
+}
+
+void Motion::set_step(double dt, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
     Vec inertia = splat(mass[i]);
     if (!viscosity.empty()) inertia += splat(0.5 * dt) * viscosity[i];
     mobility[i] = freedom[i] / inertia;
@@ -58,11 +64,11 @@ void Motion::trial(std::size_t first, std::size_t last, const StepContext& conte
   }
 }
 
-void Motion::drift(const StepContext& context) {
+void Motion::drift(const StepContext& context, std::size_t from, std::size_t to, std::size_t tier) {
   const Vec dt = splat(context.dt);
   if (measured && (context.damping > 0.0 || !viscosity.empty())) {
     double first = 0, second = 0, first_viscous = 0, second_viscous = 0;
-    for (std::size_t i = 0; i < size(); ++i) {
+    for (std::size_t i = from; i < to; ++i) {
       const Vec v0 = old_velocity[i], v1 = velocity[i];
       if (context.damping > 0.0) {
         first += dot(damping_force[i], v0);
@@ -74,11 +80,11 @@ void Motion::drift(const StepContext& context) {
         second_viscous += dot(drag, v1);
       }
     }
-    damping_work.add(0.5 * context.dt * first, 0.5 * context.dt * second);
-    dashpot_work.add(0.5 * context.dt * first_viscous, 0.5 * context.dt * second_viscous);
+    damping_work.add(0.5 * context.dt * first, 0.5 * context.dt * second, tier);
+    dashpot_work.add(0.5 * context.dt * first_viscous, 0.5 * context.dt * second_viscous, tier);
   }
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-  for (std::size_t i = 0; i < size(); ++i) displacement[i] += dt * velocity[i];
+  for (std::size_t i = from; i < to; ++i) displacement[i] += dt * velocity[i];
 }
 
 double Motion::kinetic_energy() const {
@@ -109,9 +115,9 @@ double Motion::largest_speed() const {
   return std::sqrt(largest);
 }
 
-double Motion::mean_unbalanced_force() const {
+double Motion::mean_unbalanced_force(const VecField& forces) const {
   double total = 0.0;
-  for (std::size_t i = 0; i < size(); ++i) total += norm(freedom[i] * (force[i] + tie_force[i]));
+  for (std::size_t i = 0; i < size(); ++i) total += norm(freedom[i] * (forces[i] + tie_force[i]));
   return size() == 0 ? 0.0 : total / static_cast<double>(size());
 }
 
