@@ -47,9 +47,9 @@ void time_case(const char* name, const SolidMaterial& material, double distortio
               1e-6 * elements * steps / best, static_cast<unsigned long long>(solid.state_hash()));
 }
 
-/// Rates as scenarios/two_rates.json has them: 1 in the corner's 3 elements and 2 layers more, then 4 layers each of 2 and 4.
+/// Rates as scenarios/two_rates.json has them: 1 in the corner's 3 elements and 2 layers more, then 6 layers each of 2 and 4.
 std::vector<std::uint8_t> corner_rates(int edge) {
-  constexpr int corner = 3, first_layers = 2, layers = 4, largest = 8;
+  constexpr int corner = 3, first_layers = 2, layers = 6, largest = 8;
   std::vector<std::uint8_t> rate;
   for (int k = 0; k < edge; ++k)
     for (int j = 0; j < edge; ++j)

@@ -81,9 +81,9 @@ struct Grains {
 struct Rates {
   int largest = 0;       ///< a power of two; 0: chosen from the stable steps
   bool nested = true;    ///< 2, 4, ... up to the largest, else the largest at once
-  int layers = 4;        ///< of elements at each rate on the way to the largest
+  int layers = 6;        ///< of elements at each rate on the way to the largest
   int first_layers = 2;  ///< of elements at rate 1 beyond the interface
-  double energy_tolerance = 0.02;  ///< of a run with several rates, in place of a smaller Run::energy_tolerance
+  double energy_tolerance = 0.1;  ///< of a run with several rates, in place of a smaller Run::energy_tolerance
 };
 
 struct Mesh {

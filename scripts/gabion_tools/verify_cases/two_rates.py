@@ -1,6 +1,6 @@
 """Elements of several rates: energy, what the changes of rate reflect, and what is saved.
 
-Scene two_rates: a corner of grains in much mesh, rates 1, 2, 4, 8 in layers of 4 elements. A transit is the time that a
+Scene two_rates: a corner of grains in much mesh, rates 1, 2, 4, 8 in layers of 6 elements. A transit is the time that a
 P wave takes through the ground. Excursion: largest less smallest energy balance over the largest energy; drift: the
 balance's straight-line change over the run over the same. Reflection: a packet runs down a column of the same lattice into
 the mesh and through the changes of rate, with several rates and with one; kinetic energy of the difference in the grains,
@@ -16,7 +16,7 @@ TITLE = "several rates in the continuum: energy, reflection at the changes, spee
 
 SCENE = "two_rates"
 ELEMENT, OVERLAP = 0.4, 8      # m; elements
-LARGEST, LAYERS, FIRST = 8, 4, 2
+LARGEST, LAYERS, FIRST = 8, 6, 2
 PACKET, SIGMAS = 1.5, 3.0      # standard deviation over wavelength, half length of the packet in standard deviations
 SIDE = 2 * ELEMENT
 NESTED = {"largest": LARGEST}
@@ -63,7 +63,8 @@ def column(context, elements, rates):
     steps = 8 * math.ceil(path / p_speed(whole) / whole["step"]["dt"] / 8)
     return context.run_scene(SCENE, {
         "ground.box": box(-down), "ground.periodic": '["x", "y"]', "coupling.bridging.zone": box(0.0), "coupling.bridging.overlap": f"{overlap!r} m",
-        "coupling.edge": "null", "faces": "null", "initial": json.dumps({"wave": wave}), "mesh.rates": json.dumps(rates),
+        "coupling.edge": "null", "faces": "null", "initial": json.dumps({"wave": wave}),
+        "mesh.rates": json.dumps(rates and {**rates, "energy_tolerance": 1}),
         "run.step": f"{whole['step']['dt']!r} s", **stages(steps)})
 
 
