@@ -43,7 +43,7 @@ void check_mistakes(const std::string& scene, const std::vector<Mistake>& mistak
 
 TEST_CASE("rates of the mesh that make no sense") {
   check_mistakes("tiny.json", {
-      {{"mesh.rates={\"first_layers\": 1}"}, "mesh.rates.first_layers", "at least 2; with fewer than 2 layers at the grains' own step the two media resonate"},
+      {{"mesh.rates={\"first_layers\": 1}"}, "mesh.rates.first_layers", "with fewer than 2 layers at the grains' own step the two media resonate"},
       {{"mesh.rates={\"largest\": 6}"}, "mesh.rates.largest", "6, expected a power of two"},
       {{"mesh.rates={\"largest\": 64}"}, "mesh.rates.largest", "at most 32"},
       {{"mesh.rates={\"largest\": \"most\"}"}, "mesh.rates.largest", "auto"},
