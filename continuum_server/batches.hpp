@@ -1,5 +1,5 @@
 #pragma once
-// Elements in batches of eight: those that touch the interface first, then by material, then by number.
+// Elements in batches of eight: by tier (rates.hpp), those that touch the interface first, then by material, then by number.
 
 #include <algorithm>
 #include <cstddef>
@@ -40,6 +40,7 @@ struct Batches {
   std::vector<Batch> batch;
   std::vector<std::int32_t> element;  ///< of each lane, no_element where there is none
   std::size_t interface_end = 0;      ///< batches before this one touch the interface
+  std::vector<std::uint8_t> tier;     ///< of each batch
 
   std::size_t elements() const {
     return element.size() - static_cast<std::size_t>(std::count(element.begin(), element.end(), no_element));
@@ -52,13 +53,16 @@ struct Batches {
     element[element.size() - lane_count] = number;
   }
 
-  /// Rebuilds the batches so that elements with a node below reach come first.
-  void arrange(std::size_t reach) {
+  /// Rebuilds the batches so that elements of the finest tier come first, and among them those with a node below reach.
+  /// tier_of_element: empty where all are of tier 0. Elements with a node below reach must be of tier 0.
+  void arrange(std::size_t reach, const std::vector<std::uint8_t>& tier_of_element) {
     struct Lane {
+      std::uint8_t tier;
       bool interior;
       std::int32_t material, element;
       std::size_t from;
-      auto key() const { return std::tuple(interior, material, element); }
+      auto key() const { return std::tuple(tier, interior, material, element); }
+      auto batch() const { return std::tuple(tier, interior, material); }
     };
     std::vector<Lane> lanes;
     for (std::size_t slot = 0; slot < element.size(); ++slot) {
@@ -67,7 +71,8 @@ struct Batches {
       bool interior = true;
       for (int corner = 0; corner < 8; ++corner)
         if (static_cast<std::size_t>(old.node[corner][slot % lane_count]) < reach) interior = false;
-      lanes.push_back({interior, material_key(old), element[slot], slot});
+      const std::uint8_t own = tier_of_element.empty() ? 0 : tier_of_element[static_cast<std::size_t>(element[slot])];
+      lanes.push_back({own, interior, material_key(old), element[slot], slot});
     }
     std::sort(lanes.begin(), lanes.end(), [](const Lane& a, const Lane& b) { return a.key() < b.key(); });
 
@@ -75,8 +80,9 @@ struct Batches {
     int place = lane_count;
     const Lane* last = nullptr;
     for (const Lane& lane : lanes) {
-      if (!last || place == lane_count || last->interior != lane.interior || last->material != lane.material) {
+      if (!last || place == lane_count || last->batch() != lane.batch()) {
         arranged.start_batch();
+        arranged.tier.push_back(lane.tier);
         place = 0;
       }
       arranged.put(batch[lane.from / lane_count], static_cast<int>(lane.from % lane_count), lane.element, place++);

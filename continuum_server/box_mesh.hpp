@@ -1,8 +1,11 @@
 #pragma once
 // Meshes of a box, for benchmarks and tests.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
+#include <utility>
 
 #include "continuum_server/mesh.hpp"
 
@@ -37,6 +40,24 @@ inline Mesh box_mesh(std::array<int, 3> count, Vec edges, std::array<bool, 3> pe
       }
   mesh.material.assign(mesh.elements.size(), 0);
   return mesh;
+}
+
+/// Numbers the nodes by the smallest, then by the largest rate of their elements, else as before.
+inline void number_by_rates(Mesh& mesh, const std::vector<std::uint8_t>& rate) {
+  std::vector<std::pair<int, int>> key(mesh.nodes.size(), {256, 0});
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
+    for (const std::int32_t n : mesh.elements[e])
+      key[n] = {std::min<int>(key[n].first, rate[e]), std::max<int>(key[n].second, rate[e])};
+  std::vector<std::int32_t> order(mesh.nodes.size()), place(mesh.nodes.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return key[a] < key[b]; });
+  const VecField nodes = mesh.nodes;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    mesh.nodes[k] = nodes[order[k]];
+    place[order[k]] = static_cast<std::int32_t>(k);
+  }
+  for (auto& element : mesh.elements)
+    for (std::int32_t& n : element) n = place[n];
 }
 
 /// Moves every node by up to amount (m) along each axis, always the same way.

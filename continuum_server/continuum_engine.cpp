@@ -22,6 +22,7 @@ void ContinuumEngine::set_mesh(Mesh mesh) {
   boundary = engine::Boundary{};
   tie.clear();
   past_step_ = step_change_ = 0.0;
+  rates_ = one_rate(mesh_.nodes.size());
   prepared_ = false;
 }
 
@@ -38,7 +39,9 @@ void ContinuumEngine::prepare() {
   weigh_elements();
   sum_masses();
   add_body_loads();
-  forces_.build(mesh_, materials_, share_, period());
+  forces_.build(mesh_, materials_, share_, edges());
+  forces_.set_rates(rates_);
+  forces_.arrange(0, 1);
   boundary.apply_to(motion);
   motion.threads = threads;
   motion.measured = options.measure_energy;
@@ -58,6 +61,7 @@ double ContinuumEngine::stable_step() {
   step_size_ = 0.0;
   const double squared = largest_squared_frequency(motion, [&](const VecField& u, VecField& force) {
     forces_.start({}, force);
+    if (rates_.several()) return forces_.subtract_squared(u, force);
     forces_.subtract(Part::interface, u, force);
     forces_.subtract(Part::interior, u, force);
   });
@@ -69,6 +73,7 @@ bool ContinuumEngine::step(const StepContext& context, Exchange& exchange) {
   const bool tied = tie.mode() != engine::Tie::Mode::none;
   const std::size_t reach = tie.reach(), nodes = motion.size();
   adapt(context);
+  if (rates_.several()) return step_at_rates(context, exchange);
 
   forces_.start(body_, motion.force);
   forces_.subtract(Part::interface, motion.displacement, motion.force);
@@ -94,6 +99,7 @@ bool ContinuumEngine::step(const StepContext& context, Exchange& exchange) {
 void ContinuumEngine::adapt(const StepContext& context) {
   flush_denormals();
   if (reach_ != tie.reach() || arranged_threads_ != threads) {
+    check_margin(rates_, mesh_, tie.reach());
     reach_ = tie.reach();
     motion.threads = arranged_threads_ = threads;
     forces_.arrange(reach_, threads);
@@ -134,7 +140,7 @@ void ContinuumEngine::check_health() const {
 }
 
 Corners ContinuumEngine::corners_now(std::size_t element) const {
-  return corners_of(mesh_, element, period(), &motion.displacement);
+  return corners_of(mesh_, element, edges(), &motion.displacement);
 }
 
 Ledger ContinuumEngine::ledger() const {
@@ -159,7 +165,7 @@ std::vector<engine::NamedCount> ContinuumEngine::counters() const {
 }
 
 double ContinuumEngine::unbalanced() const {
-  const double mean = motion.mean_unbalanced_force();
+  const double mean = rates_.several() ? motion.mean_unbalanced_force(present_forces()) : motion.mean_unbalanced_force();
   return mean == 0.0 ? 0.0 : mean / forces_.mean_corner_force(motion.displacement);
 }
 

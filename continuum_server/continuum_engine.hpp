@@ -25,11 +25,16 @@ class ContinuumEngine : public engine::Engine {
   /// make sense.
   void set_mesh(Mesh mesh);
   void set_materials(std::vector<SolidMaterial> materials);
+  /// The rate of each element, see rates.hpp; empty: all elements take every step. Call after prepare(), which keeps
+  /// them, as stable_step() heeds them. RequestError: rates that make no sense for the mesh and the tie.
+  void set_rates(std::span<const std::uint8_t> rate);
 
   /// Keeps the motion when it is called again for the same mesh. RequestError: mesh or material that makes
   /// no sense, inverted element.
   void prepare() override;
+  /// With several rates, the step of the run at which each element is at its own limit.
   double stable_step() override;
+  std::uint64_t period() const override { return rates_.rate.back(); }
   /// PhysicsError: a velocity that is not finite; at measured steps an element turned inside out. A new set of
   /// constraints or dashpots takes effect with prepare(), stable_step() or a new step size.
   bool step(const engine::StepContext& context, engine::Exchange& exchange) override;
@@ -60,25 +65,30 @@ class ContinuumEngine : public engine::Engine {
   void add_body_loads();
 
   // parts of a step
+  bool step_at_rates(const engine::StepContext& context, engine::Exchange& exchange);
+  void add_outer_forces(const engine::StepContext& context, std::size_t first, std::size_t last);
+  VecField present_forces() const;
   void adapt(const engine::StepContext& context);
   void book_step_change(double dt);
   void measure_stored_energy();
 
   Corners corners_now(std::size_t element) const;
   std::vector<double> centre_strains() const;
-  Vec period() const { return options.box_hi - options.box_lo; }
+  Vec edges() const { return options.box_hi - options.box_lo; }
 
   Mesh mesh_;
   std::vector<SolidMaterial> materials_;
   std::vector<double> share_;  ///< 1 - w per element
   VecField body_;              ///< body load, N; empty without gravity
   ElementForces forces_;
+  Rates rates_;
   bool prepared_ = false;
 
   // what the last adapt() was for
   double step_size_ = 0.0;
   std::size_t reach_ = 0;
   int arranged_threads_ = 1;
+  double time_ = 0.0;  ///< t_n of the last step at several rates, s
 
   // at t_n of the last measured step, J
   double kinetic_ = 0.0, elastic_ = 0.0, gravity_ = 0.0;

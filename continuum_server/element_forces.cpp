@@ -27,6 +27,7 @@ void ElementForces::build(const Mesh& mesh, const std::vector<SolidMaterial>& ma
                           const std::vector<double>& share, Vec period) {
   *this = ElementForces{};
   node_count_ = mesh.nodes.size();
+  rates_ = one_rate(node_count_);
   for (const SolidMaterial& m : materials) materials_.push_back(brick_stiffness(m));
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const Corners corners = corners_of(mesh, e, period);
@@ -54,16 +55,22 @@ void ElementForces::build(const Mesh& mesh, const std::vector<SolidMaterial>& ma
 }
 
 void ElementForces::arrange(std::size_t reach, int threads) {
-  bricks_.arrange(reach);
-  distorted_.arrange(reach);
-  shares_.clear();
-  for (const NodeRange own : node_ranges(threads)) shares_.push_back({own, {}, {}});
+  bricks_.arrange(reach, rates_.tier_of_element);
+  distorted_.arrange(reach, rates_.tier_of_element);
+  shares_.assign(static_cast<std::size_t>(threads), {});
+  const std::vector<std::size_t> corners = corners_before();
+  const NodeRange all{0, static_cast<std::int32_t>(node_count_)};
+  const std::vector<std::vector<Task>> none(1 + rates_.tiers());
+  for (const NodeRange nodes : threads > 1 ? rates_.nodes : std::vector<NodeRange>{all}) {
+    const std::vector<NodeRange> parts = cut(corners, nodes, threads);
+    for (std::size_t t = 0; t < parts.size(); ++t) shares_[t].push_back({parts[t], none, none});
+  }
   divide(bricks_, &Share::bricks);
   divide(distorted_, &Share::distorted);
 }
 
-/// Cuts the nodes where the numbers of element corners before and after are in proportion.
-std::vector<NodeRange> ElementForces::node_ranges(int threads) const {
+/// Number of element corners on the nodes before each node.
+std::vector<std::size_t> ElementForces::corners_before() const {
   std::vector<std::size_t> corners(node_count_ + 1, 0);
   const auto count = [&](const auto& batches) {
     for (std::size_t slot = 0; slot < batches.element.size(); ++slot)
@@ -74,12 +81,18 @@ std::vector<NodeRange> ElementForces::node_ranges(int threads) const {
   count(bricks_);
   count(distorted_);
   std::partial_sum(corners.begin(), corners.end(), corners.begin());
+  return corners;
+}
+
+/// Cuts the nodes where the numbers of element corners before and after are in proportion.
+std::vector<NodeRange> ElementForces::cut(const std::vector<std::size_t>& corners, NodeRange nodes, int parts) {
   std::vector<NodeRange> ranges;
-  std::int32_t first = 0;
-  for (int t = 1; t <= threads; ++t) {
-    const std::size_t until = corners.back() * static_cast<std::size_t>(t) / static_cast<std::size_t>(threads);
+  std::int32_t first = nodes.first;
+  const std::size_t start = corners[nodes.first], total = corners[nodes.last] - start;
+  for (int t = 1; t <= parts; ++t) {
+    const std::size_t until = start + total * static_cast<std::size_t>(t) / static_cast<std::size_t>(parts);
     auto last = static_cast<std::int32_t>(std::lower_bound(corners.begin(), corners.end(), until) - corners.begin());
-    if (t == threads) last = static_cast<std::int32_t>(node_count_);
+    last = t == parts ? nodes.last : std::clamp(last, first, nodes.last);
     ranges.push_back({first, last});
     first = last;
   }
@@ -87,40 +100,83 @@ std::vector<NodeRange> ElementForces::node_ranges(int threads) const {
 }
 
 template <class Batch>
-void ElementForces::divide(const Batches<Batch>& batches, std::vector<Task> (Share::*tasks)[2]) {
+void ElementForces::divide(const Batches<Batch>& batches, std::vector<std::vector<Task>> Share::*tasks) {
   for (std::size_t b = 0; b < batches.batch.size(); ++b) {
-    const int part = static_cast<int>(b < batches.interface_end ? Part::interface : Part::interior);
-    for (Share& share : shares_) {
-      int owned = 0;
-      for (int corner = 0; corner < 8; ++corner)
-        for (int lane = 0; lane < lane_count; ++lane) owned += share.own.holds(batches.batch[b].node[corner][lane]);
-      if (owned > 0) (share.*tasks)[part].push_back({static_cast<std::uint32_t>(b), owned == batch_nodes});
-    }
+    const std::size_t group = b < batches.interface_end ? interface_group : interior_group(batches.tier[b]);
+    for (std::vector<Share>& thread : shares_)
+      for (Share& share : thread) {
+        int owned = 0;
+        for (int corner = 0; corner < 8; ++corner)
+          for (int lane = 0; lane < lane_count; ++lane) owned += share.own.holds(batches.batch[b].node[corner][lane]);
+        if (owned > 0) (share.*tasks)[group].push_back({static_cast<std::uint32_t>(b), owned == batch_nodes});
+      }
   }
 }
 
-void ElementForces::start(const VecField& body, VecField& force) const {
+void ElementForces::start(const VecField& body, VecField& force, std::size_t tiers) const {
   const auto threads = static_cast<int>(shares_.size());
+  const std::int32_t end = tiers == 0 ? 0 : rates_.nodes[tiers - 1].last;
 #pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1)
   for (int t = 0; t < threads; ++t) {
     flush_denormals();
-    const NodeRange own = shares_[t].own;
-    if (body.empty())
-      std::fill(force.begin() + own.first, force.begin() + own.last, Vec{});
-    else
-      std::copy(body.begin() + own.first, body.begin() + own.last, force.begin() + own.first);
+    for (const Share& share : shares_[t]) {
+      const NodeRange own{std::min(share.own.first, end), std::min(share.own.last, end)};
+      if (body.empty())
+        std::fill(force.begin() + own.first, force.begin() + own.last, Vec{});
+      else
+        std::copy(body.begin() + own.first, body.begin() + own.last, force.begin() + own.first);
+    }
   }
 }
 
 void ElementForces::subtract(Part part, const VecField& displacement, VecField& force) const {
   const auto threads = static_cast<int>(shares_.size());
 #pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1)
-  for (int t = 0; t < threads; ++t) {
-    const Share& share = shares_[t];
-    for (const Task task : share.bricks[static_cast<int>(part)])
-      subtract_batch(bricks_.batch[task.batch], displacement.data(), share.own, task.whole, force.data());
-    for (const Task task : share.distorted[static_cast<int>(part)])
-      subtract_batch(distorted_.batch[task.batch], displacement.data(), share.own, task.whole, force.data());
+  for (int t = 0; t < threads; ++t)
+    for (const Share& share : shares_[t]) {
+      if (part == Part::interface) subtract_group(share, interface_group, displacement, force);
+      if (part == Part::interior)
+        for (std::size_t tier = 0; tier < rates_.tiers(); ++tier) subtract_group(share, interior_group(tier), displacement, force);
+    }
+}
+
+void ElementForces::subtract(Part part, const VecField& displacement, VecField& force, std::size_t tiers) const {
+  if (tiers == 0) return;
+  if (part == Part::interface) return subtract(part, displacement, force);
+  const auto threads = static_cast<int>(shares_.size());
+#pragma omp parallel for schedule(static, 1) num_threads(threads) if (threads > 1)
+  for (int t = 0; t < threads; ++t)
+    for (const Share& share : shares_[t])
+      for (std::size_t tier = tiers; tier-- > 0;) {
+        subtract_group(share, interior_group(tier), displacement, force);
+        if (tier > 0) raise(share, tier, force);
+      }
+}
+
+void ElementForces::subtract_squared(const VecField& displacement, VecField& force) const {
+  for (std::size_t tier = rates_.tiers(); tier-- > 0;) {
+    for (const std::vector<Share>& thread : shares_)
+      for (const Share& share : thread) {
+        subtract_group(share, interior_group(tier), displacement, force);
+        if (tier == 0) subtract_group(share, interface_group, displacement, force);
+      }
+    const double ratio = tier > 0 ? rates_.raise(tier) : static_cast<double>(rates_.rate[0]);
+    for (Vec& f : force) f *= engine::splat(ratio * ratio);
+  }
+}
+
+void ElementForces::subtract_group(const Share& share, std::size_t group, const VecField& displacement, VecField& force) const {
+  for (const Task task : share.bricks[group])
+    subtract_batch(bricks_.batch[task.batch], displacement.data(), share.own, task.whole, force.data());
+  for (const Task task : share.distorted[group])
+    subtract_batch(distorted_.batch[task.batch], displacement.data(), share.own, task.whole, force.data());
+}
+
+void ElementForces::raise(const Share& share, std::size_t tier, VecField& force) const {
+  const Vec ratio = engine::splat(rates_.raise(tier));
+  for (const NodeRange range : rates_.raised[tier]) {
+    const std::int32_t last = std::min(range.last, share.own.last);
+    for (std::int32_t n = std::max(range.first, share.own.first); n < last; ++n) force[n] *= ratio;
   }
 }
 

@@ -12,7 +12,7 @@ using engine::RequestError;
 
 void ContinuumEngine::check_shapes() const {
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
-    const Corners corners = corners_of(mesh_, e, period());
+    const Corners corners = corners_of(mesh_, e, edges());
     double smallest = smallest_corner_jacobian(corners);
     if (smallest > 0.0)
       for (const GaussPoint& point : gauss_points(corners)) smallest = std::min(smallest, point.volume);
@@ -34,7 +34,7 @@ void ContinuumEngine::weigh_elements() {
   share_.assign(mesh_.elements.size(), 1.0);
   if (weights.width <= 0.0) return;
   for (std::size_t e = 0; e < share_.size(); ++e)
-    share_[e] = std::max(weights.floor, 1.0 - grains.at(centre_of(corners_of(mesh_, e, period()))));
+    share_[e] = std::max(weights.floor, 1.0 - grains.at(centre_of(corners_of(mesh_, e, edges()))));
 }
 
 void ContinuumEngine::sum_masses() {
@@ -42,7 +42,7 @@ void ContinuumEngine::sum_masses() {
   std::fill(motion.plain_mass.begin(), motion.plain_mass.end(), 0.0);
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
     const double density = materials_[mesh_.material[e]].density;
-    const auto points = gauss_points(corners_of(mesh_, e, period()));
+    const auto points = gauss_points(corners_of(mesh_, e, edges()));
     for (int corner = 0; corner < 8; ++corner) {
       double mass = 0.0;
       for (const GaussPoint& point : points) mass += density * point.shape[corner] * point.volume;
@@ -65,7 +65,7 @@ void ContinuumEngine::add_body_loads() {
   body_.assign(motion.size(), Vec{});
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
     const double density = materials_[mesh_.material[e]].density;
-    for (const GaussPoint& point : gauss_points(corners_of(mesh_, e, period()))) {
+    for (const GaussPoint& point : gauss_points(corners_of(mesh_, e, edges()))) {
       const double share = weighted ? 1.0 - grains.at(point.position) : 1.0;
       for (int corner = 0; corner < 8; ++corner)
         body_[mesh_.elements[e][corner]] +=

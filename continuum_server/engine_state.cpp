@@ -77,7 +77,7 @@ std::vector<double> ContinuumEngine::centre_strains() const {
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
     std::array<Vec, 8> u;
     for (int corner = 0; corner < 8; ++corner) u[corner] = motion.displacement[mesh_.elements[e][corner]];
-    const auto strain = centre_strain(corners_of(mesh_, e, period()), u);
+    const auto strain = centre_strain(corners_of(mesh_, e, edges()), u);
     strains.insert(strains.end(), strain.begin(), strain.end());
   }
   return strains;
@@ -97,7 +97,7 @@ std::optional<std::vector<double>> ContinuumEngine::field(const std::string& nam
   };
   const std::map<std::string, Getter> getters{{"displacement", [&] { return components(motion.displacement); }},
                                               {"velocity", [&] { return components(motion.velocity); }},
-                                              {"force", [&] { return components(motion.force); }},
+                                              {"force", [&] { return components(rates_.several() ? present_forces() : motion.force); }},
                                               {"tie_force", [&] { return components(motion.tie_force); }},
                                               {"position", [&] { return components(motion.position); }},
                                               {"mass", [&] { return motion.mass; }},

@@ -53,6 +53,7 @@ std::vector<continuum::SolidMaterial> to_materials(const protocol::SolidMaterial
 std::vector<std::string> capabilities() {
   std::vector<std::string> names;
   for (const std::string& field : continuum::ContinuumEngine::field_names()) names.push_back("field:" + field);
+  names.push_back("rates");
   return names;
 }
 
@@ -65,6 +66,10 @@ void serve(protocol::Server& server) {
   });
   service.on<protocol::SolidMaterials>([&](const protocol::SolidMaterials& message) {
     engine.set_materials(to_materials(message));
+    return protocol::Ok{};
+  });
+  service.on<protocol::Rates>([&](const protocol::Rates& message) {
+    engine.set_rates(message.rate.data);
     return protocol::Ok{};
   });
   server.run(service);

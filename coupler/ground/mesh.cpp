@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "coupler/ground/layers.hpp"
+
 namespace gabion::coupler {
 
 namespace {
@@ -30,6 +32,20 @@ void append(std::vector<double>& lines, const std::vector<double>& more) {
   lines.insert(lines.end(), more.begin() + (lines.empty() ? 0 : 1), more.end());
 }
 
+/// What nodes are sorted by: the interface's first, then by the smallest and the largest level of their elements.
+std::vector<int> sorting_keys(const std::vector<std::uint8_t>& rank, const std::vector<std::uint8_t>& level,
+                              const std::vector<std::array<std::int64_t, 8>>& corners) {
+  constexpr int levels = 256;
+  std::vector<int> lowest(rank.size(), level.empty() ? 0 : levels), highest(rank.size(), 0), key(rank.size());
+  for (std::size_t e = 0; e < level.size(); ++e)
+    for (const std::int64_t n : corners[e]) {
+      lowest[n] = std::min<int>(lowest[n], level[e]);
+      highest[n] = std::max<int>(highest[n], level[e]);
+    }
+  for (std::size_t n = 0; n < rank.size(); ++n) key[n] = rank[n] == 0 ? 0 : 1 + levels * lowest[n] + highest[n];
+  return key;
+}
+
 }  // namespace
 
 Grid make_grid(const scene::Scene& scene, const Zone& zone) {
@@ -54,7 +70,7 @@ Grid make_grid(const scene::Scene& scene, const Zone& zone) {
   return Grid(std::move(lines), scene.ground.periodic);
 }
 
-HexMesh make_mesh(const Grid& grid, const Zone& zone) {
+HexMesh make_mesh(const Grid& grid, const Zone& zone, const std::optional<scene::Rates>& rates) {
   HexMesh mesh;
   mesh.grid = grid;
   const int nx = grid.cells(0), ny = grid.cells(1), nz = grid.cells(2);
@@ -67,6 +83,7 @@ HexMesh make_mesh(const Grid& grid, const Zone& zone) {
     return bits[corner][axis];
   };
   std::vector<std::array<std::int64_t, 8>> corners;
+  std::vector<bool> interface_elements;
   for (int k = 0; k < nz; ++k)
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
@@ -90,13 +107,16 @@ HexMesh make_mesh(const Grid& grid, const Zone& zone) {
           r = std::min<std::uint8_t>(r, interface_element ? 0 : 1);
         }
         corners.push_back(nodes);
+        interface_elements.push_back(interface_element);
         mesh.wrap.push_back(wrap);
       }
 
+  if (rates && hole) mesh.level = rate_levels(*rates, layers_from(corners, rank.size(), interface_elements));
+  const std::vector<int> place = sorting_keys(rank, mesh.level, corners);
   std::vector<std::int64_t> order;
   for (std::size_t n = 0; n < rank.size(); ++n)
     if (rank[n] < 2) order.push_back(static_cast<std::int64_t>(n));
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return rank[a] < rank[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return place[a] < place[b]; });
   mesh.node_of_grid.assign(rank.size(), -1);
   for (const std::int64_t n : order) {
     mesh.node_of_grid[n] = static_cast<std::int32_t>(mesh.nodes.size());

@@ -2,6 +2,7 @@
 // The hexahedral mesh around the grains: a rectilinear grid fitted to ground and zone, with a hole.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "coupler/ground/grid.hpp"
@@ -11,12 +12,13 @@ namespace gabion::coupler {
 
 struct HexMesh {
   Grid grid;
-  std::vector<Point> nodes;                           ///< m; interface nodes first
+  std::vector<Point> nodes;                           ///< m; interface nodes first, then by the levels of their elements
   std::vector<std::array<std::int32_t, 8>> elements;  ///< corner order as in PROTOCOL.md, MESH
   std::vector<std::array<std::uint8_t, 8>> wrap;      ///< bits x = 1, y = 2, z = 4
   std::vector<Cell> cells;                            ///< grid cell of each element
   std::vector<std::int32_t> node_of_grid;             ///< mesh node of a grid node, -1 where none
   std::vector<std::int32_t> element_of_cell;          ///< -1 in the hole
+  std::vector<std::uint8_t> level;                    ///< of each element, see rate_levels; empty: one rate
 
   std::int32_t element_at(const Cell& cell) const;
   /// Mesh element and its stencil, mesh nodes, at x. Inside the hole: the element beyond the nearest
@@ -30,7 +32,8 @@ struct HexMesh {
 /// Away from the zone the size grows by `grading` a layer.
 Grid make_grid(const scene::Scene& scene, const Zone& zone);
 
-/// Elements of the grid but those in the hole (zone.inner()); no hole without interface.
-HexMesh make_mesh(const Grid& grid, const Zone& zone);
+/// Elements of the grid but those in the hole (zone.inner()); no hole without interface. rates: as the scene wants them;
+/// nodes are then numbered by the smallest, then by the largest level of their elements.
+HexMesh make_mesh(const Grid& grid, const Zone& zone, const std::optional<scene::Rates>& rates = {});
 
 }  // namespace gabion::coupler

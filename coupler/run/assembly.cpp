@@ -39,7 +39,7 @@ Assembly assemble(const scene::Scene& scene, const Packing& packing, const Elast
   else
     a.zone = Zone(scene.ground.box, scene.ground.box, 0.0, 0.0);
   if (a.has_mesh) {
-    a.mesh = make_mesh(make_grid(scene, a.zone), a.zone);
+    a.mesh = make_mesh(make_grid(scene, a.zone), a.zone, scene.mesh.rates);
     a.layers = face_layers(a.mesh, elasticity.face_offset);
   }
   if (a.has_grains) {

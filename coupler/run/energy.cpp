@@ -44,6 +44,8 @@ std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& d
   lost_ = lost;
   scale_ = std::max({scale_, moved, lost});
   drift_ = std::isfinite(balance) ? std::max(drift_, std::fabs(balance - first_)) : INFINITY;
+  low_ = std::min(low_, balance - first_);
+  high_ = std::max(high_, balance - first_);
   error_ = scale_ > 0.0 ? drift_ / scale_ : 0.0;
   const double larger = std::max(std::fabs(tie_work[0]), std::fabs(tie_work[1]));
   if (larger > 0.0) residual_ = std::fabs(tie_work[0] + tie_work[1]) / larger;
@@ -55,7 +57,7 @@ std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& d
 
 nlohmann::json EnergyBalance::state() const {
   return {{"first", first_}, {"error", error_}, {"residual", residual_}, {"scale", scale_}, {"lost", lost_}, {"drift", drift_},
-          {"previous", previous_}, {"started", started_}, {"new_body", new_body_}};
+          {"previous", previous_}, {"started", started_}, {"new_body", new_body_}, {"low", low_}, {"high", high_}};
 }
 
 void EnergyBalance::restore(const nlohmann::json& state) {
@@ -68,6 +70,8 @@ void EnergyBalance::restore(const nlohmann::json& state) {
   previous_ = state.at("previous");
   started_ = state.at("started");
   new_body_ = state.at("new_body");
+  low_ = state.at("low");
+  high_ = state.at("high");
 }
 
 }  // namespace gabion::coupler

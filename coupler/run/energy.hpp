@@ -26,6 +26,8 @@ class EnergyBalance {
   void body_added() { new_body_ = true; }
 
   double error() const { return error_; }                 ///< largest |balance - first| over the largest energy moved
+  /// Largest less smallest balance over the largest energy moved.
+  double excursion() const { return scale_ > 0.0 ? (high_ - low_) / scale_ : 0.0; }
   double multiplier_residual() const { return residual_; } ///< |work on grains + work on continuum| over the larger one
   double largest_energy() const { return scale_; }        ///< J
   double dissipated() const { return lost_; }             ///< J
@@ -40,6 +42,7 @@ class EnergyBalance {
   std::vector<double> last_;
   double first_ = 0.0, error_ = 0.0, residual_ = 0.0, scale_ = 0.0, lost_ = 0.0, drift_ = 0.0;
   double previous_ = 0.0;
+  double low_ = 0.0, high_ = 0.0;  ///< balance less first
   bool started_ = false, new_body_ = false;
 };
 

@@ -316,8 +316,8 @@ protocol::Ready configure_continuum(const scene::Scene& scene, const Assembly& a
 
 namespace {
 
-/// Displacement and velocity of one point, added to what is there.
-using Start = std::function<void(const Point& x, double* displacement, double* velocity)>;
+/// Displacement and velocity of one point, added to what is there; rate: its step over that of the run.
+using Start = std::function<void(const Point& x, double rate, double* displacement, double* velocity)>;
 
 Start wave_start(const scene::Scene& scene, const Assembly& assembly, double dt) {
   const scene::Wave wave = *scene.wave;
@@ -326,9 +326,9 @@ Start wave_start(const scene::Scene& scene, const Assembly& assembly, double dt)
   const double speed = wave.sense * (wave.speed > 0.0 ? wave.speed : std::sqrt(modulus / assembly.elasticity.density));
   const double k = 2.0 * std::acos(-1.0) / wave.wavelength;
   // u = a cos(k s) exp(-s^2/(2 W^2)), s = x - centre - speed t
-  return [=](const Point& x, double* displacement, double* velocity) {
+  return [=](const Point& x, double rate, double* displacement, double* velocity) {
     const double square = wave.width * wave.width;
-    const double s = x[wave.axis] - wave.centre, back = s + 0.5 * speed * dt;
+    const double s = x[wave.axis] - wave.centre, back = s + 0.5 * speed * (rate * dt);
     displacement[wave.polarisation] += wave.amplitude * std::cos(k * s) * std::exp(-s * s / (2 * square));
     velocity[wave.polarisation] += speed * wave.amplitude * std::exp(-back * back / (2 * square)) *
                                    (k * std::sin(k * back) + back / square * std::cos(k * back));
@@ -339,7 +339,7 @@ Start motion_start(const scene::Scene& scene) {
   const scene::InitialMotion motion = scene.initial;
   Point centre;
   for (int axis = 0; axis < 3; ++axis) centre[axis] = 0.5 * (scene.ground.box.lo[axis] + scene.ground.box.hi[axis]);
-  return [=, random = std::mt19937_64(motion.noise_seed)](const Point& x, double* u, double* v) mutable {
+  return [=, random = std::mt19937_64(motion.noise_seed)](const Point& x, double, double* u, double* v) mutable {
     const auto& e = motion.strain;
     const double gradient[3][3] = {{e[0], 0.5 * e[5], 0.5 * e[4]}, {0.5 * e[5], e[1], 0.5 * e[3]}, {0.5 * e[4], 0.5 * e[3], e[2]}};
     const Point r{x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]};
@@ -361,26 +361,27 @@ void put_field(EngineLink& link, const char* name, const std::vector<double>& va
   link.tell(field);
 }
 
-void put(EngineLink* link, const std::vector<Point>& points, Start start) {
+void put(EngineLink* link, const std::vector<Point>& points, Start start, const std::function<double(std::size_t)>& rate) {
   if (!link) return;
   std::vector<double> displacement(3 * points.size(), 0.0), velocity(3 * points.size(), 0.0);
-  for (std::size_t i = 0; i < points.size(); ++i) start(points[i], &displacement[3 * i], &velocity[3 * i]);
+  for (std::size_t i = 0; i < points.size(); ++i) start(points[i], rate(i), &displacement[3 * i], &velocity[3 * i]);
   put_field(*link, "displacement", displacement);
   put_field(*link, "velocity", velocity);
 }
 
 }  // namespace
 
-void start_motion(const scene::Scene& scene, const Assembly& assembly, double dt, EngineLink* dem, EngineLink* continuum) {
+void start_motion(const scene::Scene& scene, const Assembly& assembly, double dt, EngineLink* dem, EngineLink* continuum,
+                  const std::function<double(std::size_t)>& node_rate) {
   if (!scene.wave && !scene.initial.any()) return;
   std::vector<Start> starts;
   if (scene.wave) starts.push_back(wave_start(scene, assembly, dt));
   if (scene.initial.any()) starts.push_back(motion_start(scene));
-  const Start all = [&](const Point& x, double* u, double* v) {
-    for (Start& start : starts) start(x, u, v);
+  const Start all = [&](const Point& x, double rate, double* u, double* v) {
+    for (Start& start : starts) start(x, rate, u, v);
   };
-  put(dem, assembly.grains.position, all);
-  put(continuum, assembly.mesh.nodes, all);
+  put(dem, assembly.grains.position, all, [](std::size_t) { return 1.0; });
+  put(continuum, assembly.mesh.nodes, all, node_rate);
   if (!dem) return;
   std::vector<double> turned;  // grains turn with the rigid rotation
   for (std::size_t i = 0; i < assembly.grains.position.size(); ++i)

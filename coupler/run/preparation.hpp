@@ -32,8 +32,10 @@ std::array<double, 6> obtain_face_offsets(const scene::Scene& scene, const Packi
 protocol::Ready configure_dem(const scene::Scene& scene, Assembly& assembly, EngineLink& dem, const Log& log);
 protocol::Ready configure_continuum(const scene::Scene& scene, const Assembly& assembly, EngineLink& continuum);
 
-/// Puts the scene's initial motion and wave packet into velocity (at -dt/2) and displacement of both engines.
-void start_motion(const scene::Scene& scene, const Assembly& assembly, double dt, EngineLink* dem, EngineLink* continuum);
+/// Puts the scene's initial motion and wave packet into velocity (half a step before the start) and displacement of both
+/// engines. node_rate: step of a node over dt.
+void start_motion(const scene::Scene& scene, const Assembly& assembly, double dt, EngineLink* dem, EngineLink* continuum,
+                  const std::function<double(std::size_t)>& node_rate);
 
 /// Edge-to-edge: each grain at the border feels the gravity of its part on the grains' side, whatever its weight.
 void trim_gravity(const scene::Scene& scene, const Assembly& assembly, const std::vector<double>& grain_weights, EngineLink& dem);

@@ -103,7 +103,7 @@ void Recorder::monitor(const std::string& stage, std::uint64_t step, double time
   monitor_->append(row);
   if (scene_.run.measure_energy) {
     std::vector<double> row = energy_.add(advance.dem, advance.continuum);
-    row.insert(row.begin(), time - dt);  // the ledger is that of the last step's t_n
+    row.insert(row.begin(), time - advance.ledger_age * dt);  // the ledger is that of a step's beginning
     if (!energy_rows_) {
       std::vector<std::string> columns = energy_.columns();
       columns.insert(columns.begin(), "time [s]");

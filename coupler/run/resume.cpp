@@ -51,7 +51,9 @@ void Simulation::save_checkpoint() {
       {"step", stepper_->step()}, {"time", stepper_->time()}, {"dt", dt_},
       {"stage", at_.stage}, {"taken", at_.taken}, {"most", at_.most}, {"least", at_.least}, {"unbalanced", at_.unbalanced},
       {"next_output", next_output_}, {"largest_rotation", largest_rotation_}, {"largest_damage", largest_tied_damage_}, {"stable_dem", stable_dem_}, {"stable_continuum", stable_continuum_},
-      {"zone_watch", zone_watch_ ? zone_watch_->memory() : nlohmann::json()}, {"steps_to_look", steps_to_look_}, {"stages", stages_}, {"warnings", warnings_}, {"recorder", recorder_->memory()}, {"faces", faces_->dead_loads()},
+      {"zone_watch", zone_watch_ ? zone_watch_->memory() : nlohmann::json()}, {"steps_to_look", steps_to_look_},
+      {"stages", stages_}, {"warnings", warnings_}, {"period", rates_->period()}, {"largest_rate", rates_->largest()},
+      {"rates_used", rates_used_}, {"element_steps", element_steps_}, {"grain_steps", grain_steps_}, {"recorder", recorder_->memory()}, {"faces", faces_->dead_loads()},
       {"block", block_ ? to_json(*block_) : nlohmann::json()}, {"dem", state_of(dem_)}, {"continuum", state_of(continuum_)}};
   write_checkpoint(folder_.file(checkpoint_name), state);
   checkpointed_ = std::chrono::steady_clock::now();
@@ -78,6 +80,11 @@ std::size_t Simulation::restore_checkpoint() {
   if (zone_watch_) zone_watch_->remember(saved.at("zone_watch"));
   saved.at("stable_dem").get_to(stable_dem_);
   saved.at("stable_continuum").get_to(stable_continuum_);
+  rates_->resume(saved.at("period"), saved.at("largest_rate"));
+  saved.at("element_steps").get_to(element_steps_);
+  saved.at("grain_steps").get_to(grain_steps_);
+  rates_used_ = saved.at("rates_used");
+  place_probes();
   set_step(saved.at("dt"));
   give_state(dem_, saved.at("dem"));
   give_state(continuum_, saved.at("continuum"));

@@ -63,9 +63,11 @@ nlohmann::json Simulation::run() {
   result["wall"]["total"] = std::chrono::duration<double>(Clock::now() - begin).count();
   folder_.write_json("summary.json", result);
   const double error = recorder_->energy().error();
-  if (scene_.run.measure_energy && error > scene_.run.energy_tolerance)
-    throw RunFailed("the energy balance is off by " + number(error) + " of the largest energy, above run.energy_tolerance " +
-                    number(scene_.run.energy_tolerance) + "; look at energy.csv for the entry that grows");
+  const bool swings = !rates_used_.is_null() && scene_.mesh.rates->energy_tolerance > scene_.run.energy_tolerance;
+  const double tolerance = swings ? scene_.mesh.rates->energy_tolerance : scene_.run.energy_tolerance;
+  if (scene_.run.measure_energy && error > tolerance)
+    throw RunFailed("the energy balance is off by " + number(error) + " of the largest energy, above " +
+                    (swings ? "mesh.rates.energy_tolerance " : "run.energy_tolerance ") + number(tolerance) + "; look at energy.csv for the entry that grows");
   return result;
 }
 
@@ -113,9 +115,10 @@ void Simulation::prepare() {
   if (tie_) recorder_->interface_geometry(*tie_);
   if (scene_.block && dem_) recorder_->block_shape(placed_block(assembly_.grains));
   stepper_.emplace(dem_, continuum_, tie_ ? &*tie_ : nullptr);
-  place_probes();
+  rates_.emplace(tie_ ? scene_.mesh.rates : std::nullopt, assembly_.mesh, continuum_);
 }
 
+/// Where the probes are; sampled whenever all nodes stand at one time.
 void Simulation::place_probes() {
   protocol::Probes in_grains, in_mesh;
   for (auto* p : {&in_grains, &in_mesh}) p->row_ptr = std::vector<std::int32_t>{0};
@@ -133,7 +136,7 @@ void Simulation::place_probes() {
     p->row_ptr.set_shape(std::array<std::uint64_t, 1>{p->row_ptr.size()});
     p->entities.set_shape(std::array<std::uint64_t, 1>{p->entities.size()});
     p->coefficients.set_shape(std::array<std::uint64_t, 1>{p->coefficients.size()});
-    p->every = 1;
+    p->every = rates_->period();
   }
   recorder_->set_probes(in_grains.names, in_mesh.names);
   if (!in_grains.names.empty()) dem_->tell(in_grains);
@@ -163,6 +166,34 @@ double Simulation::choose_step(const scene::Stage& stage) {
     return *scene_.run.step;
   }
   return scene_.run.step_fraction * limit;
+}
+
+/// Turns several rates on where the stage's motion is undamped, and checks that they are stable.
+void Simulation::choose_rates(const scene::Stage& stage, double dt) {
+  if (rates_->period() == 1 || stage.damping > 0.0) return;
+  const std::uint64_t fits = rates_->fit(dt);
+  if (rates_->fixed() && fits < rates_->period())
+    throw ScenarioError("mesh.rates.largest: at a step of " + number(dt) + " s in stage '" + stage.name + "' elements of rate " +
+                        std::to_string(rates_->period()) + " are above 0.9 of their stable step; " +
+                        (fits > 1 ? "the largest rate that fits is " + std::to_string(fits) : "no rate above 1 fits") +
+                        ": set it, or 'auto', or make the elements larger");
+  if (fits == 1) return;
+  const std::vector<std::size_t> counts = rates_->elements();
+  std::string text;
+  nlohmann::json elements;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    const std::string rate = std::to_string(std::uint64_t{1} << k);
+    elements[rate] = counts[k];
+    text += (k > 0 ? ", " : "") + std::to_string(counts[k]) + " of rate " + rate;
+  }
+  rates_used_ = {{"largest", fits}, {"elements", elements}};
+  log_("rates: elements " + text);
+}
+
+/// As many steps or a few more, so that all nodes stand at one time.
+std::uint64_t Simulation::whole_periods(std::uint64_t steps) const {
+  const std::uint64_t period = rates_->period();
+  return (steps + period - 1) / period * period;
 }
 
 void Simulation::set_step(double dt) {
@@ -198,20 +229,27 @@ void Simulation::begin_stage(std::size_t index) {
 
   if (stage.zero_displacements) recorder_->zero_displacements(dem_, continuum_);
 
+  rates_->cut(1);
   double dt = choose_step(stage);
+  if (first) {
+    rates_->plan(scene_.run.step ? dt : dt * std::sqrt(1.0 + stage.damping));
+    place_probes();
+  }
   // ends at the first of duration, steps and until; at_least holds for until alone
   std::uint64_t most = stage.steps > 0 ? stage.steps : stage.max_steps;
   if (std::isfinite(stage.duration)) {
-    const auto whole = static_cast<std::uint64_t>(std::ceil(stage.duration / dt));
+    const std::uint64_t whole = whole_periods(static_cast<std::uint64_t>(std::ceil(stage.duration / dt)));
     dt = stage.duration / static_cast<double>(whole);
     most = stage.steps > 0 ? std::min(most, whole) : whole;
   }
+  most = whole_periods(most);
+  choose_rates(stage, dt);
   at_ = {.stage = index, .taken = 0, .most = most, .least = static_cast<std::uint64_t>(std::ceil(stage.at_least / dt)),
          .unbalanced = scene::infinity};
   set_step(dt);
   if (first) {
     try {
-      start_motion(scene_, assembly_, dt, dem_, continuum_);
+      start_motion(scene_, assembly_, dt, dem_, continuum_, [this](std::size_t node) { return rates_->node_rate(node); });
     } catch (const std::runtime_error& problem) {
       if (scene_.initial.state.empty()) throw;
       throw ScenarioError(problem.what());
@@ -231,12 +269,16 @@ void Simulation::run_stage(const scene::Stage& stage) {
   while (taken < most && !rested()) {
     std::uint64_t chunk = std::min<std::uint64_t>(std::max<std::uint64_t>(1, scene_.output.monitor_steps), most - taken);
     if (taken == 0) chunk = 1;  // the stage's own first balance
+    const std::uint64_t period = rates_->period();
     if (block_) chunk = std::min(chunk, static_cast<std::uint64_t>(std::clamp(block_row_time / dt_, 1.0, most_block_row_steps)));
     if (scene_.output.every > 0.0)
       chunk = std::min(chunk, std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil((next_output_ - stepper_->time()) / dt_ - 1e-6))));
+    chunk = block_ ? std::max(period, chunk / period * period) : whole_periods(chunk);
     activity_.is("stepping");
-    last_ = stepper_->advance(chunk, dt_, stage.damping, scene_.run.measure_energy);
+    last_ = stepper_->advance(chunk, dt_, stage.damping, scene_.run.measure_energy ? period : 0);
     taken += chunk;
+    element_steps_ += rates_->element_steps(chunk);
+    grain_steps_ += chunk * assembly_.grains.position.size();
     unbalanced = 0.0;
     for (const auto* report : {&last_.dem, &last_.continuum})
       if (*report) unbalanced = std::max(unbalanced, (*report)->unbalanced);
@@ -358,7 +400,7 @@ nlohmann::json Simulation::summary() const {
   if (last_.dem) s["state_hash"]["dem"] = hex(last_.dem->state_hash);
   if (last_.continuum) s["state_hash"]["continuum"] = hex(last_.continuum->state_hash);
   s["sizes"] = {{"grains", assembly_.grains.position.size()}, {"nodes", assembly_.mesh.nodes.size()}, {"elements", assembly_.mesh.elements.size()},
-                {"packing", packing_.position.size()}};
+                {"packing", packing_.position.size()}, {"grain_steps", grain_steps_}, {"element_steps", element_steps_}};
   s["packing"] = {{"solid_fraction", packing_.solid_fraction}, {"contacts_per_grain", packing_.contacts_per_grain}, {"gap", packing_.gap},
                   {"rattlers", packing_.rattlers}, {"residual_overlap", packing_.residual_overlap}, {"mean_diameter", packing_.mean_diameter()}};
   if (needs_elasticity(scene_)) {
@@ -383,6 +425,10 @@ nlohmann::json Simulation::summary() const {
   const EnergyBalance& energy = recorder_->energy();
   s["energy"] = {{"balance_error", energy.error()}, {"largest", energy.largest_energy()}, {"dissipated", energy.dissipated()},
                  {"multiplier_work_residual", energy.multiplier_residual()}};
+  if (!rates_used_.is_null()) {
+    s["rates"] = rates_used_;
+    s["rates"]["energy_excursion"] = energy.excursion();
+  }
   for (const auto* report : {&last_.dem, &last_.continuum})
     if (*report) s["momentum"][report == &last_.dem ? "dem" : "continuum"] = (*report)->momentum.data;
   s["stages"] = stages_;

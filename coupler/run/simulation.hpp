@@ -14,6 +14,7 @@
 #include "coupler/run/interface_tie.hpp"
 #include "coupler/run/preparation.hpp"
 #include "coupler/run/progress.hpp"
+#include "coupler/run/rates.hpp"
 #include "coupler/run/recorder.hpp"
 #include "coupler/run/run_failed.hpp"
 #include "coupler/run/stepper.hpp"
@@ -55,6 +56,8 @@ class Simulation {
   void begin_stage(std::size_t index);
   void run_stage(const scene::Stage& stage);
   double choose_step(const scene::Stage& stage);
+  void choose_rates(const scene::Stage& stage, double dt);
+  std::uint64_t whole_periods(std::uint64_t steps) const;
   double stable_step();
   void set_step(double dt);
   PlacedBlock placed_block(const GrainSet& grains) const;
@@ -83,6 +86,7 @@ class Simulation {
   std::optional<InterfaceTie> tie_;
   std::optional<Recorder> recorder_;
   std::optional<Stepper> stepper_;
+  std::optional<Rates> rates_;
   Progress progress_;
   std::vector<double> grain_mass_, node_mass_, grain_weights_;
   double stable_dem_ = 0.0, stable_continuum_ = 0.0, dt_ = 0.0, next_output_ = 0.0;
@@ -98,6 +102,8 @@ class Simulation {
   double largest_tied_damage_ = 0.0;
   std::optional<ZoneWatch> zone_watch_;
   std::uint64_t steps_to_look_ = 0;  ///< until the zone is looked at again
+  std::uint64_t element_steps_ = 0, grain_steps_ = 0;
+  nlohmann::json rates_used_;  ///< of the last stage with several rates; null: none
   double largest_rotation_ = 0.0;  ///< rad, of the interface, where it moved far enough to be looked at
   std::string last_checkpoint_;
   std::chrono::steady_clock::time_point checkpointed_ = std::chrono::steady_clock::now();

@@ -19,7 +19,7 @@ double seconds_since(Clock::time_point& last) {
 
 }  // namespace
 
-Advance Stepper::advance(std::uint64_t steps, double dt, double damping, bool measure) {
+Advance Stepper::advance(std::uint64_t steps, double dt, double damping, std::uint64_t measure) {
   Clock::time_point begin = Clock::now();
   const std::uint64_t bytes_before = tie_ ? dem_->bytes() + continuum_->bytes() : 0;
   protocol::Run run;
@@ -28,7 +28,7 @@ Advance Stepper::advance(std::uint64_t steps, double dt, double damping, bool me
   run.time = time_;
   run.dt = dt;
   run.damping = damping;
-  run.measure = measure ? 1 : 0;
+  run.measure = static_cast<std::uint8_t>(measure);
   if (dem_) dem_->start(run);
   if (continuum_) continuum_->start(run);
 
@@ -38,6 +38,7 @@ Advance Stepper::advance(std::uint64_t steps, double dt, double damping, bool me
     step_ += steps;
 
   Advance advance;
+  advance.ledger_age = static_cast<double>(measure);
   if (dem_) advance.dem = dem_->finish();
   if (continuum_) advance.continuum = continuum_->finish();
   time_ += static_cast<double>(steps) * dt;

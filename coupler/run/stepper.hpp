@@ -17,6 +17,7 @@ struct StepTimes {
 };
 
 struct Advance {
+  double ledger_age = 0.0;  ///< steps between the time to which the ledgers belong and the end
   std::optional<protocol::RunDone> dem, continuum;
 };
 
@@ -25,8 +26,9 @@ class Stepper {
   /// Any of the links may be null, and the tie with them.
   Stepper(EngineLink* dem, EngineLink* continuum, InterfaceTie* tie) : dem_(dem), continuum_(continuum), tie_(tie) {}
 
-  /// Takes steps of dt and returns what the engines report. The clock moves on.
-  Advance advance(std::uint64_t steps, double dt, double damping, bool measure);
+  /// Takes steps of dt and returns what the engines report. The clock moves on. measure: the ledgers are those of the
+  /// step so many before the end; 0: none.
+  Advance advance(std::uint64_t steps, double dt, double damping, std::uint64_t measure);
 
   /// Sets the clock of a run that goes on.
   void resume(std::uint64_t step, double time) {

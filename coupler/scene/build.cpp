@@ -96,8 +96,18 @@ Grains grains(const Json& g, const Json& coupling) {
   return result;
 }
 
+Rates rates(const Json& r) {
+  return {.largest = r["largest"].is_number() ? r["largest"].get<int>() : 0,
+          .nested = r["nested"],
+          .layers = r["layers"],
+          .first_layers = r["first_layers"],
+          .energy_tolerance = r["energy_tolerance"]};
+}
+
 Mesh mesh(const Json& m) {
-  return {.size = m["size"], .grading = m["grading"], .element = m["element"], .stiffness = m["stiffness"], .held_faces = m["held_faces"]};
+  Mesh result{.size = m["size"], .grading = m["grading"], .element = m["element"], .stiffness = m["stiffness"], .held_faces = m["held_faces"], .rates = {}};
+  if (m.contains("rates")) result.rates = rates(m["rates"]);
+  return result;
 }
 
 /// Radii from the border within which grains are tied. A tied layer is too stiff, for its grains cannot move against one

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "coupler/scene/checks.hpp"
@@ -180,6 +181,13 @@ void check_elements(Checker& check) {
                 "make the elements larger or the grains smaller: finer meshes see the single grains");
 }
 
+void check_rates(Checker& check) {
+  const auto& rates = check.scene.mesh.rates;
+  if (!rates || rates->largest == 0) return;
+  if (!std::has_single_bit(static_cast<unsigned>(rates->largest)))
+    check.error("mesh.rates.largest", "a power of two: 2, 4, 8, 16 or 32", "a finer rate must take part in every step of a coarser one");
+}
+
 void check_probes(Checker& check) {
   const auto& probes = check.scene.probes;
   for (std::size_t i = 0; i < probes.size(); ++i) {
@@ -256,6 +264,7 @@ void check_space(Checker& check) {
   const bool sound_zone = check_zone(check);
   const bool to_choose = check.coupled() && scene.grains.zone_to_choose;
   if (check.has_mesh() && has_size && !to_choose) check_elements(check);
+  check_rates(check);
   if (sound_zone && has_size && has_radius) check_overlap(check);
   if (sound_zone) check_fills_and_mesh(check);
   if (sound_zone) check_block_place(check);

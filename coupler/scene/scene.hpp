@@ -78,6 +78,15 @@ struct Grains {
   std::string geometry = "updated";  ///< frozen, updated
 };
 
+/// Elements far from the interface are evaluated less often.
+struct Rates {
+  int largest = 0;       ///< a power of two; 0: chosen from the stable steps
+  bool nested = true;    ///< 2, 4, ... up to the largest, else the largest at once
+  int layers = 6;        ///< of elements at each rate on the way to the largest
+  int first_layers = 2;  ///< of elements at rate 1 beyond the interface
+  double energy_tolerance = 0.1;  ///< of a run with several rates, in place of a smaller Run::energy_tolerance
+};
+
 struct Mesh {
   double size = 0.0;     ///< m; the size is fitted to the ground and the zone
   double grading = 1.0;  ///< growth of element size per layer away from the zone
@@ -85,6 +94,7 @@ struct Mesh {
   /// Continuum constants from: measured (on the packing), material (young, poisson, bulk_density)
   std::string stiffness = "measured";  ///< measured, measured_isotropic, material
   std::string held_faces = "measured";  ///< measured: as long as the grains held there; plain: on the face
+  std::optional<Rates> rates;           ///< absent: all elements take every step
 };
 
 struct Sponge {

@@ -17,6 +17,7 @@ struct Constraint {
   std::uint8_t components = 0;  ///< bits x = 1, y = 2, z = 4, rotations = 8 (grains)
   Vec direction{};              ///< m/s per unit of the history
   History history;
+  bool ascending = false;  ///< the entities; found out when it is added
 };
 
 /// Forces on a group: vector * history(t).
@@ -25,6 +26,7 @@ struct Load {
   std::vector<std::int32_t> entities;
   VecField vectors;  ///< N per unit of the history
   History history;
+  bool ascending = false;  ///< the entities; found out when it is added
 };
 
 /// Viscous absorbers on a group.
@@ -45,15 +47,19 @@ class Boundary {
   /// Writes freedom and viscosity of the motion.
   void apply_to(Motion& motion) const;
 
-  /// Adds the loads at context.time to motion.force.
-  void add_loads(Motion& motion, const StepContext& context) const;
+  /// Adds the loads at context.time to motion.force, or at a time to the forces of the points [first, last).
+  void add_loads(Motion& motion, const StepContext& context) const { add_loads(motion.force, context.time, 0, motion.size()); }
+  void add_loads(VecField& force, double time, std::size_t first, std::size_t last) const;
 
   /// Sets the prescribed velocity components, at t_n + dt/2, of entities in [first, last).
   void prescribe(Motion& motion, const StepContext& context, std::size_t first,
                  std::size_t last) const;
 
   /// After the correction: reactions of the groups, and (ledger on) the work of loads and constraints.
-  void book(const Motion& motion, const StepContext& context);
+  void book(const Motion& motion, const StepContext& context) { book(motion, context, 0, motion.size(), 0); }
+  /// The same for the points [first, last) of a tier, context being the tier's own; reactions are then means over the
+  /// period of the coarsest tier, whose impulses come in one step of it.
+  void book(const Motion& motion, const StepContext& context, std::size_t first, std::size_t last, std::size_t tier);
 
   std::vector<std::string> constraint_names() const;
   /// Force of each constraint on its group in the last step, N, [groups][3].
@@ -74,6 +80,7 @@ class Boundary {
   std::vector<Dashpot> dashpots_;
   std::vector<double> reactions_;
   double load_power_before_ = 0.0;
+  std::vector<double> parts_;  ///< of the reactions, [tiers][groups][3]
 };
 
 }  // namespace gabion::engine

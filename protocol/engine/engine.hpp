@@ -107,6 +107,8 @@ class Engine {
   virtual void prepare() = 0;
   /// Largest stable step of this engine alone, without damping, s. Call after prepare.
   virtual double stable_step() = 0;
+  /// Steps after which all points stand at one time; runs take whole periods. 1 unless points have several rates.
+  virtual std::uint64_t period() const { return 1; }
   /// One step of the algorithm; false when the coupler asked to stop after it.
   virtual bool step(const StepContext& context, Exchange& exchange) = 0;
 

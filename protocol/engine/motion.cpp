@@ -19,6 +19,7 @@ Vec magnitude(Vec a) { return a > Vec{} ? a : -a; }
 
 void Motion::resize(std::size_t n, bool measure_energy) {
   measured = measure_energy;
+  tiers.clear();
   for (VecField* field : {&position, &displacement, &velocity, &force, &tie_force, &mobility})
     field->assign(n, Vec{});
   freedom.assign(n, vec(1, 1, 1));
@@ -30,7 +31,12 @@ void Motion::resize(std::size_t n, bool measure_energy) {
 }
 
 void Motion::set_step(double dt) {
-  for (std::size_t i = 0; i < size(); ++i) {
+  if (tiers.empty()) set_step(dt, 0, size());
+  for (const Tier& tier : tiers) set_step(static_cast<double>(tier.rate) * dt, tier.first, tier.last);
+}
+
+void Motion::set_step(double dt, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
     Vec inertia = splat(mass[i]);
     if (!viscosity.empty()) inertia += splat(0.5 * dt) * viscosity[i];
     mobility[i] = freedom[i] / inertia;
@@ -58,12 +64,12 @@ void Motion::trial(std::size_t first, std::size_t last, const StepContext& conte
   }
 }
 
-void Motion::drift(const StepContext& context) {
+void Motion::drift(const StepContext& context, std::size_t from, std::size_t to, std::size_t tier) {
   const Vec dt = splat(context.dt);
   if (measured) {  // always: the second half of the last damped step is still to be added
     double first = 0, second = 0, first_viscous = 0, second_viscous = 0;
     const bool lossy = context.damping > 0.0 || !viscosity.empty();
-    for (std::size_t i = 0; lossy && i < size(); ++i) {
+    for (std::size_t i = from; lossy && i < to; ++i) {
       const Vec v0 = old_velocity[i], v1 = velocity[i];
       if (context.damping > 0.0) {
         first += dot(damping_force[i], v0);
@@ -75,24 +81,24 @@ void Motion::drift(const StepContext& context) {
         second_viscous += dot(drag, v1);
       }
     }
-    damping_work.add(0.5 * context.dt * first, 0.5 * context.dt * second);
-    dashpot_work.add(0.5 * context.dt * first_viscous, 0.5 * context.dt * second_viscous);
+    damping_work.add(0.5 * context.dt * first, 0.5 * context.dt * second, tier);
+    dashpot_work.add(0.5 * context.dt * first_viscous, 0.5 * context.dt * second_viscous, tier);
   }
   // 0 v is 0, or not a number where v is none: one sum tells for a block of points
   constexpr std::size_t block = 512;
-  const std::size_t blocks = (size() + block - 1) / block;
+  const std::size_t blocks = (to - from + block - 1) / block;
   bool sound = true;
 #pragma omp parallel for schedule(static) reduction(&& : sound) num_threads(threads) if (threads > 1)
   for (std::size_t b = 0; b < blocks; ++b) {
-    const std::size_t last = std::min(size(), (b + 1) * block);
+    const std::size_t last = std::min(to, from + (b + 1) * block);
     Vec nothing{};
-    for (std::size_t i = b * block; i < last; ++i) {
+    for (std::size_t i = from + b * block; i < last; ++i) {
       displacement[i] += dt * velocity[i];
       nothing += splat(0.0) * velocity[i];
     }
     sound = sound && sum(nothing) == 0.0;
   }
-  finite = sound;
+  finite = (from == 0 || finite) && sound;
 }
 
 double Motion::kinetic_energy() const {
@@ -129,9 +135,9 @@ double Motion::largest_speed() const {
   return std::sqrt(largest);
 }
 
-double Motion::mean_unbalanced_force() const {
+double Motion::mean_unbalanced_force(const VecField& forces) const {
   double total = 0.0;
-  for (std::size_t i = 0; i < size(); ++i) total += norm(freedom[i] * (force[i] + tie_force[i]));
+  for (std::size_t i = 0; i < size(); ++i) total += norm(freedom[i] * (forces[i] + tie_force[i]));
   return size() == 0 ? 0.0 : total / static_cast<double>(size());
 }
 

@@ -24,21 +24,38 @@ struct StepContext {
   double dt = 0.0;       ///< step, s
   double damping = 0.0;  ///< local damping coefficient, 0 to below 1
   bool measure = false;  ///< evaluate the ledger in this step
+  std::uint64_t step = 0;  ///< n; only engines with points of several rates look at it
+};
+
+/// Points that take steps of their own, rate times that of the run. See Motion::tiers.
+struct Tier {
+  std::size_t first = 0, last = 0;  ///< points [first, last)
+  std::uint64_t rate = 1;           ///< a power of two
+
+  /// The tier's own step, at a step of the run that is a multiple of the rate.
+  StepContext own(const StepContext& context) const {
+    StepContext longer = context;
+    longer.dt = static_cast<double>(rate) * context.dt;
+    return longer;
+  }
 };
 
 /// Work of a force over leapfrog steps, in the two halves that make the discrete energy exact: at t_n
 /// the first half F_n . v(n-1/2) dt/2 has been done, the second half F_n . v(n+1/2) dt/2 has not.
+/// Tiers add theirs at their own steps; the sum belongs to one time when all of them have just done so.
 class Work {
  public:
-  void add(double first_half, double second_half) {
-    done_ += pending_ + first_half;
-    pending_ = second_half;
+  static constexpr std::size_t most_tiers = 8;
+
+  void add(double first_half, double second_half, std::size_t tier = 0) {
+    done_ += pending_[tier] + first_half;
+    pending_[tier] = second_half;
   }
   double until_now() const { return done_; }  ///< J, up to t_n of the last step added
 
  private:
   double done_ = 0.0;
-  double pending_ = 0.0;
+  double pending_[most_tiers] = {};
 };
 
 struct Motion {
@@ -60,6 +77,10 @@ struct Motion {
   VecField old_velocity;   ///< v(n-1/2)
   VecField damping_force;  ///< local damping force at t_n, N
 
+  /// Points of different rates, the finest first; empty: all take every step. A tier takes part in the steps whose number
+  /// is a multiple of its rate, and then moves by its whole own step.
+  std::vector<Tier> tiers;
+
   bool measured = false;
   bool finite = true;  ///< of the velocities in the last drift
   int threads = 1;
@@ -71,7 +92,7 @@ struct Motion {
   /// Sizes every array for n points at rest.
   void resize(std::size_t n, bool measure_energy);
 
-  /// Prepares mobility for a step size; call when dt, masses, viscosity or freedom change.
+  /// Prepares mobility for a step size; call when dt, masses, viscosity, freedom or tiers change.
   void set_step(double dt);
 
   /// velocity := trial velocity of points [first, last). Prescribed components are left alone.
@@ -79,7 +100,9 @@ struct Motion {
 
   /// u += dt v for all points, and says in finite whether each v is a number; with the ledger on, books the work of
   /// damping and dashpots first.
-  void drift(const StepContext& context);
+  void drift(const StepContext& context) { drift(context, 0, size(), 0); }
+  /// The same for the points [first, last) of a tier, context being the tier's own.
+  void drift(const StepContext& context, std::size_t first, std::size_t last, std::size_t tier);
 
   /// sum of 1/2 v(n-1/2) m v(n+1/2), J; needs measured.
   double kinetic_energy() const;
@@ -93,7 +116,11 @@ struct Motion {
   double largest_speed() const;
 
   /// Mean over points of |total force|, multipliers included, free components only, N.
-  double mean_unbalanced_force() const;
+  double mean_unbalanced_force() const { return mean_unbalanced_force(force); }
+  double mean_unbalanced_force(const VecField& forces) const;
+
+ private:
+  void set_step(double dt, std::size_t first, std::size_t last);
 };
 
 }  // namespace gabion::engine

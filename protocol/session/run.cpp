@@ -19,8 +19,16 @@ void check(const Run& request, const engine::Engine& engine) {
   if (!(std::isfinite(request.dt) && request.dt > 0.0)) refuse("dt", request.dt, "a finite step above 0");
   if (!std::isfinite(request.time)) refuse("time", request.time, "a finite time");
   if (!(request.damping >= 0.0 && request.damping < 1.0)) refuse("damping", request.damping, "0 to below 1");
+  if (request.measure > request.steps) refuse("measure", request.measure, "at most the number of steps");
   if (request.measure != 0 && !engine.options.measure_energy)
     throw RequestError("RUN.measure", "the engine keeps no energy ledger", "set OPTIONS.measure_energy before PREPARE");
+  const std::uint64_t period = engine.period();
+  if (period == 1) return;
+  const std::string whole = "a multiple of the largest of RATES, " + std::to_string(period);
+  if (request.steps % period != 0) refuse("steps", static_cast<double>(request.steps), whole.c_str());
+  if (request.first_step % period != 0) refuse("first_step", static_cast<double>(request.first_step), whole.c_str());
+  if (request.measure % period != 0) refuse("measure", request.measure, whole.c_str());
+  if (request.damping > 0.0) refuse("damping", request.damping, "0 while RATES are above 1");
 }
 
 }  // namespace
@@ -37,8 +45,8 @@ RunDone Service::run(const Run& request) {
   std::uint64_t taken = 0;
   state_ = SessionState::running;
   try {
-    const bool measured = take_steps(request, taken);
-    RunDone done = summary(request, taken, measured);
+    const std::optional<engine::Ledger> ledger = take_steps(request, taken);
+    RunDone done = summary(request, taken, ledger);
     state_ = SessionState::ready;
     return done;
   } catch (...) {
@@ -48,8 +56,9 @@ RunDone Service::run(const Run& request) {
   }
 }
 
-/// Leaves the number of steps in taken; true when the ledger was measured in the last one.
-bool Service::take_steps(const Run& request, std::uint64_t& taken) {
+/// Leaves the number of steps in taken; returns the ledger of the step that was to be measured.
+std::optional<engine::Ledger> Service::take_steps(const Run& request, std::uint64_t& taken) {
+  std::optional<engine::Ledger> ledger;
   ConnectionExchange exchange(*connection_, engine_, options_.exchange_timeout);
   engine::StepContext context{.time = request.time, .dt = request.dt, .damping = request.damping};
   try {
@@ -57,9 +66,11 @@ bool Service::take_steps(const Run& request, std::uint64_t& taken) {
       const std::uint64_t step = request.first_step + taken;
       engine_.current_step = step;
       context.time = request.time + static_cast<double>(taken) * request.dt;
-      context.measure = request.measure != 0 && taken + 1 == request.steps;
+      context.measure = request.measure != 0 && taken + request.measure == request.steps;
+      context.step = step;
       engine_.probes.sample_if_due(step, engine_.motion);
       const bool go_on = engine_.step(context, exchange);
+      if (context.measure) ledger = engine_.ledger();
       ++taken;
       if (!go_on) break;
       if (heartbeats_->peer_is_gone())
@@ -70,10 +81,10 @@ bool Service::take_steps(const Run& request, std::uint64_t& taken) {
     throw;
   }
   engine_.current_step = request.first_step + taken;
-  return context.measure;
+  return ledger;
 }
 
-RunDone Service::summary(const Run& request, std::uint64_t taken, bool measured) {
+RunDone Service::summary(const Run& request, std::uint64_t taken, const std::optional<engine::Ledger>& ledger) {
   RunDone done;
   done.step = request.first_step + taken;
   done.time = request.time + static_cast<double>(taken) * request.dt;
@@ -83,11 +94,10 @@ RunDone Service::summary(const Run& request, std::uint64_t taken, bool measured)
     throw engine::PhysicsError("velocity", "a velocity is not finite", "take a smaller step");
   done.unbalanced = engine_.unbalanced();
   done.largest_displacement = engine_.tie.largest_displacement(engine_.motion);
-  if (measured) {
-    const engine::Ledger ledger = engine_.ledger();
+  if (ledger) {
     std::vector<double> energies;
     std::vector<std::uint8_t> kinds;
-    for (const auto& entry : ledger.entries) {
+    for (const auto& entry : ledger->entries) {
       done.ledger_names.push_back(entry.name);
       energies.push_back(entry.energy);
       kinds.push_back(static_cast<std::uint8_t>(entry.kind));

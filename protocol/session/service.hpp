@@ -61,8 +61,8 @@ class Service {
   void handle(const Frame& frame);
   void add_shared_messages();
   RunDone run(const Run& request);
-  bool take_steps(const Run& request, std::uint64_t& taken);
-  RunDone summary(const Run& request, std::uint64_t taken, bool measured);
+  std::optional<engine::Ledger> take_steps(const Run& request, std::uint64_t& taken);
+  RunDone summary(const Run& request, std::uint64_t taken, const std::optional<engine::Ledger>& ledger);
   Ready ready_message();
 
   template <class M>

@@ -151,6 +151,34 @@ class ContinuumServer(SessionCases, RunCases, EngineTest):
         self.assertAlmostEqual(reactions["x"][0] / force, -1.0, 8)
         self.assertAlmostEqual(reactions["y"][1] / force, 0.0, 8)
 
+    def test_rates(self):
+        self.launch()
+        client = self.connect()
+        if "rates" not in client.hello(TOKEN)["capabilities"]:
+            self.skipTest("the engine knows one rate only")
+        self.set_up(client, measure=1)
+        self.assertEqual(self.refusal(client.ask, "RATES", rate=[4]).code, "state")
+        ready = client.ask("PREPARE")
+        dt = 2.0 ** math.floor(math.log2(0.2 * ready["stable_step"]))
+        velocity = [[1e-3 * math.sin(3 * i + axis) for axis in range(3)] for i in range(8)]
+        client.ask("SET_FIELD", field="velocity", values=velocity)
+        start = client.ask("CHECKPOINT")["blob"]
+        one = client.run(10, 4 * dt, measure=1)
+        client.ask("RESTORE", blob=start)
+        client.ask("RATES", rate=[4])
+        self.assertAlmostEqual(client.ask("STABLE_STEP")["stable_step"] / ready["stable_step"], 0.25, 3)
+        four = client.run(40, dt, measure=4)  # a brick that is evaluated in every fourth step: the steps are four times as long
+        self.assertEqual(four["state_hash"], one["state_hash"])
+        self.assertEqual(list(four["ledger"].values), list(one["ledger"].values))
+        for fields in (dict(steps=6), dict(steps=8, first_step=2), dict(steps=8, damping=0.1), dict(steps=8, measure=1)):
+            error = self.refusal(client.ask, "RUN", **{"dt": dt, **fields})
+            self.assertEqual((error.code, error.where), ("value", f"RUN.{list(fields)[-1]}"))
+        for rates in ([3], [1, 1], [0]):
+            error = self.refusal(client.ask, "RATES", rate=rates)
+            self.assertEqual((error.code, error.where), ("value", "RATES.rate"))
+        client.ask("RATES", rate=[])
+        client.run(1, dt, first_step=3)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "coupler/ground/probe_rows.hpp"
@@ -38,6 +39,37 @@ TEST_CASE("interface nodes come first", "[mesh]") {
     REQUIRE(!(near && seen_far));
     seen_far = seen_far || !near;
   }
+}
+
+TEST_CASE("levels follow the layers from the interface, and nodes are numbered by them", "[mesh]") {
+  Ground g = Ground::make(pit, 1.5, 1.5, false);
+  scene::Rates rates{.largest = 0, .nested = true, .layers = 2, .first_layers = 2, .energy_tolerance = 0.1};
+  const coupler::Grid grid = coupler::make_grid(g.scene, g.zone);
+  const coupler::HexMesh plain = coupler::make_mesh(grid, g.zone), mesh = coupler::make_mesh(grid, g.zone, rates);
+  REQUIRE(plain.level.empty());
+  REQUIRE(mesh.level.size() == mesh.elements.size());
+  int highest = 0;
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+    // the overlap is one element wide and the grid cubic: layers are counted by the distance beyond the zone
+    const int layer = std::max(0, static_cast<int>(std::ceil(g.zone.beyond_outer(grid.cell_centre(mesh.cells[e])) / 1.5 - 1e-9)));
+    const int expected = layer <= 2 ? 0 : 1 + (layer - 3) / 2;
+    CHECK(mesh.level[e] == expected);
+    highest = std::max(highest, expected);
+  }
+  CHECK(highest == 2);
+  std::vector<std::pair<int, int>> key(mesh.nodes.size(), {255, 0});
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
+    for (const std::int32_t n : mesh.elements[e])
+      key[n] = {std::min<int>(key[n].first, mesh.level[e]), std::max<int>(key[n].second, mesh.level[e])};
+  CHECK(std::is_sorted(key.begin(), key.end()));
+  // the tied nodes stay the first, as without rates
+  const coupler::InterfaceRows rows = g.rows("strict");
+  CHECK_FALSE(rows.tied_nodes.empty());
+  for (std::size_t n = 0; n < rows.tied_nodes.size(); ++n) CHECK(mesh.nodes[rows.tied_nodes[n]] == plain.nodes[rows.tied_nodes[n]]);
+
+  rates.nested = false;
+  const coupler::HexMesh at_once = coupler::make_mesh(grid, g.zone, rates);
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e) CHECK(at_once.level[e] == (mesh.level[e] > 0 ? 1 : 0));
 }
 
 TEST_CASE("grading grows elements away from the zone", "[mesh]") {

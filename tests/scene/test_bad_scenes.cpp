@@ -41,6 +41,17 @@ void check_mistakes(const std::string& scene, const std::vector<Mistake>& mistak
 
 }  // namespace
 
+TEST_CASE("rates of the mesh that make no sense") {
+  check_mistakes("tiny.json", {
+      {{"mesh.rates={\"first_layers\": 1}"}, "mesh.rates.first_layers", "with fewer than 2 layers at the grains' own step the two media resonate"},
+      {{"mesh.rates={\"largest\": 6}"}, "mesh.rates.largest", "6, expected a power of two"},
+      {{"mesh.rates={\"largest\": 64}"}, "mesh.rates.largest", "at most 32"},
+      {{"mesh.rates={\"largest\": \"most\"}"}, "mesh.rates.largest", "auto"},
+      {{"mesh.rates={\"layers\": 0}"}, "mesh.rates.layers", "at least 1"},
+      {{"mesh.rates={\"layer\": 3}"}, "mesh.rates.layer", "did you mean 'layers'?"},
+  });
+}
+
 TEST_CASE("unknown, missing and mistyped keys") {
   check_mistakes("tiny.json", {
       {{"grains.radios=1"}, "grains.radios", "unknown key; did you mean 'radius'? known here: bond_gap, contacts_per_grain,"},

@@ -285,6 +285,18 @@ TEST_CASE("the rest of the keys arrive") {
   CHECK_FALSE(scene.grains.rotations);
   CHECK(scene.mesh.grading == 1.2);
   CHECK(scene.coupling.rotation_limit == Approx(3 * std::numbers::pi / 180));
+  CHECK_FALSE(scene.mesh.rates);
+  const Scene automatic = tiny({"mesh.rates={}"}).scene, chosen = tiny({"mesh.rates={\"largest\": 8, \"nested\": false, \"layers\": 3, \"first_layers\": 5}"}).scene;
+  REQUIRE(automatic.mesh.rates);
+  CHECK(automatic.mesh.rates->largest == 0);
+  CHECK(automatic.mesh.rates->nested);
+  CHECK(automatic.mesh.rates->layers == 6);
+  CHECK(automatic.mesh.rates->first_layers == 2);
+  REQUIRE(chosen.mesh.rates);
+  CHECK(chosen.mesh.rates->largest == 8);
+  CHECK_FALSE(chosen.mesh.rates->nested);
+  CHECK(chosen.mesh.rates->layers == 3);
+  CHECK(chosen.mesh.rates->first_layers == 5);
   const Scene wave = read_scene(scenarios() / "lattice_wave.json").scene;
   REQUIRE(wave.wave);
   CHECK(wave.wave->axis == 2);

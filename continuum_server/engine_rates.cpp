@@ -1,0 +1,83 @@
+// The step where elements have several rates: ContinuumEngine::step in the same order, for the tiers that take part.
+
+#include <algorithm>
+
+#include "continuum_server/continuum_engine.hpp"
+
+namespace gabion::continuum {
+
+using engine::Exchange;
+using engine::RequestError;
+using engine::StepContext;
+using engine::Tier;
+
+void ContinuumEngine::set_rates(std::span<const std::uint8_t> rate) {
+  if (!prepared_) throw RequestError("RATES", "the engine is not prepared", "send PREPARE first");
+  Rates rates = make_rates(mesh_, rate);
+  check_margin(rates, mesh_, tie.reach());
+  rates_ = std::move(rates);
+  motion.tiers.clear();
+  if (rates_.several())
+    for (std::size_t t = 0; t < rates_.tiers(); ++t)
+      motion.tiers.push_back({static_cast<std::size_t>(rates_.nodes[t].first), static_cast<std::size_t>(rates_.nodes[t].last), rates_.rate[t]});
+  forces_.set_rates(rates_);
+  reach_ = tie.reach();
+  forces_.arrange(reach_, arranged_threads_);
+  step_size_ = 0.0;
+}
+
+/// Tied nodes are of the first tier and no coarser element touches the interface's (check_margin), so that what is sent
+/// is complete before the coarser tiers are looked at.
+bool ContinuumEngine::step_at_rates(const StepContext& context, Exchange& exchange) {
+  const bool tied = tie.mode() != engine::Tie::Mode::none;
+  const std::size_t reach = tie.reach(), active = rates_.active(context.step);
+  time_ = context.time;
+  past_step_ = 0.0;  // a change of the step is booked between steps at one rate only
+
+  forces_.start({}, motion.force, active);
+  forces_.subtract(Part::interface, motion.displacement, motion.force, active);
+  add_outer_forces(context, 0, reach);
+  motion.trial(0, reach, context);
+  boundary.prescribe(motion, context, 0, reach);
+  if (tied) exchange.send_gap(tie.project(motion, context));
+
+  forces_.subtract(Part::interior, motion.displacement, motion.force, active);
+  for (std::size_t t = 0; t < active; ++t) {
+    const Tier& tier = motion.tiers[t];
+    const StepContext own = tier.own(context);
+    const std::size_t first = std::max(tier.first, reach);
+    add_outer_forces(own, first, tier.last);
+    motion.trial(first, tier.last, own);
+    boundary.prescribe(motion, own, first, tier.last);
+  }
+
+  const bool more = !tied || exchange.receive_multipliers(tie.answer_buffer());
+  if (tied) tie.correct(motion, context);
+  for (std::size_t t = 0; t < active; ++t)
+    boundary.book(motion, motion.tiers[t].own(context), motion.tiers[t].first, motion.tiers[t].last, t);
+  if (context.measure) measure_stored_energy();
+  for (std::size_t t = 0; t < active; ++t)
+    motion.drift(motion.tiers[t].own(context), motion.tiers[t].first, motion.tiers[t].last, t);
+  if (context.measure || !motion.finite) check_health();
+  return more;
+}
+
+/// Body forces and loads, once the elements' sums are raised.
+void ContinuumEngine::add_outer_forces(const StepContext& context, std::size_t first, std::size_t last) {
+  if (!body_.empty())
+    for (std::size_t n = first; n < last; ++n) motion.force[n] += body_[n];
+  boundary.add_loads(motion.force, context.time, first, last);
+}
+
+/// Forces as they are now, without the tie. motion.force holds the impulse of each node's last step, with those of
+/// coarser elements in it or not.
+VecField ContinuumEngine::present_forces() const {
+  VecField force(motion.size());
+  forces_.start(body_, force);
+  forces_.subtract(Part::interface, motion.displacement, force);
+  forces_.subtract(Part::interior, motion.displacement, force);
+  boundary.add_loads(force, time_, 0, motion.size());
+  return force;
+}
+
+}  // namespace gabion::continuum
