@@ -46,7 +46,7 @@ bool too_far(Checker& check) {
   const Scene& scene = check.scene;
   for (int axis = 0; axis < 3; ++axis) {
     const double step = coordinate_step(scene.origin[axis]);
-    if (step <= finest * smallest_extent(scene.ground.box)) continue;
+    if (step == 0.0 || step <= finest * smallest_extent(scene.ground.box)) continue;
     check.error("ground.box", std::string("coordinates nearer to 0 in ") + axis_names[axis],
                 "so far away they are told apart to " + format_quantity(step, "m") + " only; move the scene");
     return true;
