@@ -4,6 +4,7 @@
 
 #include "coupler/scene/checks.hpp"
 #include "coupler/scene/geometry.hpp"
+#include "coupler/scene/origin.hpp"
 #include "coupler/scene/units.hpp"
 
 namespace gabion::scene {
@@ -38,6 +39,20 @@ bool ordered(Checker& check, const Box& box, const std::string& path) {
     return false;
   }
   return true;
+}
+
+/// Far from the origin numbers are coarse; a ground whose sides they change is another ground.
+bool too_far(Checker& check) {
+  constexpr double finest = 1e-6;  // step between coordinates over the ground's smallest side
+  const Scene& scene = check.scene;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double step = coordinate_step(scene.origin[axis]);
+    if (step == 0.0 || step <= finest * smallest_extent(scene.ground.box)) continue;
+    check.error("ground.box", std::string("coordinates nearer to 0 in ") + axis_names[axis],
+                "so far away they are told apart to " + format_quantity(step, "m") + " only; move the scene");
+    return true;
+  }
+  return false;
 }
 
 void check_fills(Checker& check) {
@@ -247,7 +262,7 @@ void check_wave(Checker& check) {
 
 void check_space(Checker& check) {
   const Scene& scene = check.scene;
-  if (!ordered(check, scene.ground.box, "ground.box")) return;
+  if (too_far(check) || !ordered(check, scene.ground.box, "ground.box")) return;
   check_fills(check);
   check_probes(check);
   check_wave(check);

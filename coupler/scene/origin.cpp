@@ -9,6 +9,13 @@ namespace {
 
 constexpr double sides_to_origin = 100.0;  // largest step between origins, in sides of the ground
 
+/// A decimal grid: what was written with few digits becomes that number again.
+double steps_per_metre(double origin) {
+  constexpr double safety = 4.0;
+  const double spacing = std::nextafter(std::fabs(origin), infinity) - std::fabs(origin);
+  return std::pow(10.0, std::floor(-std::log10(safety * spacing)));
+}
+
 Point local(const Point& x, const Point& origin) {
   return {local_coordinate(x[0], origin[0]), local_coordinate(x[1], origin[1]), local_coordinate(x[2], origin[2])};
 }
@@ -19,12 +26,11 @@ Box local(const Box& box, const Point& origin) { return {local(box.lo, origin), 
 
 double local_coordinate(double x, double origin) {
   if (origin == 0.0) return x;
-  constexpr double safety = 4.0;
-  const double spacing = std::nextafter(std::fabs(origin), infinity) - std::fabs(origin);
-  // a decimal grid: what was written with few digits becomes that number again
-  const double per_metre = std::pow(10.0, std::floor(-std::log10(safety * spacing)));
+  const double per_metre = steps_per_metre(origin);
   return std::round((x - origin) * per_metre) / per_metre;
 }
+
+double coordinate_step(double origin) { return origin == 0.0 ? 0.0 : 1.0 / steps_per_metre(origin); }
 
 void count_from_origin(Scene& scene) {
   const Box ground = scene.ground.box;

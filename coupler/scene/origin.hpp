@@ -11,6 +11,9 @@ namespace gabion::scene {
 /// largest side, so that a scene that is moved by such multiples gives the same bits.
 void count_from_origin(Scene& scene);
 
+/// Step between the numbers that local_coordinate gives for this origin, m; 0 for the origin itself.
+double coordinate_step(double origin);
+
 /// x less the origin, both in m, without the digits that x cannot have so far away.
 double local_coordinate(double x, double origin);
 

@@ -38,6 +38,7 @@ TEST_CASE("a tied step is stable up to the uncoupled limit and no further") {
     CAPTURE(rows);
     Column c;
     c.rows = rows;
+    c.width = 0.4;
     if (c.rows.starts_with("edge")) c.model = "edge";
     const double found = stable(c);
     least = std::min(least, found);
@@ -58,6 +59,7 @@ TEST_CASE("weights near zero cost no step") {
       CAPTURE(rows, floor);
       Column c;
       c.rows = rows;
+      c.width = 0.4;
       c.floor = floor;
       least = std::min(least, stable(c));
       Coupled all(c);
@@ -78,6 +80,7 @@ TEST_CASE("media of very different stiffness and density stay tied and keep thei
         Column c;
         c.rows = rows;
         if (c.rows == "edge") c.model = "edge";
+        c.width = 0.4;
         c.stiffness = stiffness;
         c.density = density;
         Coupled all(c);

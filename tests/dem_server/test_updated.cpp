@@ -45,6 +45,7 @@ TEST_CASE("contact history survives rebuilds: every step or hardly ever") {
   for (std::size_t i = 0; i < often.engine.motion.size(); ++i)
     difference = std::max(difference, norm(often.engine.motion.displacement[i] - seldom.engine.motion.displacement[i]));
   gabion::figure("rebuild_difference", difference);
+  CHECK_THROWS_WITH(often.engine.set_contact_options({Geometry::updated, true, -0.1}), Catch::Contains("skin is"));
 }
 
 TEST_CASE("the energy balance closes while bonds break and contacts slide") {

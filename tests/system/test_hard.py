@@ -57,6 +57,17 @@ class Far(SystemTest):
         figure("moved_difference", worst)
 
 
+    def test_a_scene_too_far_away_is_refused(self):
+        for far in (10**9, 10**15):
+            path = self.folder / "too_far.json"
+            path.write_text(json.dumps(moved_scene("tiny_lattice.json", (0, 0, far))))
+            self.out = self.folder / f"too-far-{far}"
+            ended = self.ended(self.coupler(path, "--dem", NOWHERE, "--continuum", NOWHERE))
+            self.assertEqual(ended.status, 2, ended)
+            for words in ("ground.box", "nearer to 0 in z", "move the scene"):
+                self.assertIn(words, ended.error)
+
+
 class Steps(SystemTest):
     def test_the_balance_goes_on_from_stage_to_stage(self):
         # damped and undamped stages have different steps; faces let go, and dead loads take their place
