@@ -242,7 +242,7 @@ TEST_CASE("the ledger at several rates holds loads, dashpots, gravity and a driv
   CHECK(error[0] < 0.001);
   CHECK(error[1] < 0.1 * error[0]);
   for (const auto& e : solid.engine.ledger().entries)
-    if (e.name != "multipliers" && e.name != "damping") CHECK(e.energy != 0.0);
+    if (e.name != "multipliers" && e.name != "damping" && e.name != "step_change") CHECK(e.energy != 0.0);
   // at rest the base carries the weight and the load, whichever rate its nodes have
   Solid still(bar.mesh, soil);
   still.engine.options.gravity = vec(0, 0, -9.81);

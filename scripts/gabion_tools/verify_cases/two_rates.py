@@ -81,13 +81,13 @@ def run(context):
     sizes, rates = result.summary["sizes"], result.summary["rates"]
     yield context.figure("elements_per_grain", sizes["elements"] / sizes["grains"], "", ">= 50")
     yield context.figure("energy_excursion", rates["energy_excursion"], "", "<= 0.01")
-    yield context.figure("energy_drift", drift, "", "<= 0.002")
+    yield context.figure("energy_drift", drift, "", "<= 0.001")
     shorter, drift = shaken(context, {"wave": {**WAVE, "wavelength": "4 m"}}, 50)
     yield context.figure("energy_excursion, 10 elements a wavelength", shorter.summary["rates"]["energy_excursion"], "", "<= 0.01")
-    yield context.figure("energy_drift, 10 elements a wavelength", drift, "", "<= 0.002")
+    yield context.figure("energy_drift, 10 elements a wavelength", drift, "", "<= 0.001")
     noisy, drift = shaken(context, NOISE, 50 if context.full else 10)
     yield context.figure("energy_excursion, random motion", noisy.summary["rates"]["energy_excursion"], "", "<= 0.01")
-    yield context.figure("energy_drift, random motion", drift, "", "<= 0.002")
+    yield context.figure("energy_drift, random motion", drift, "", "<= 0.001")
     for elements in (8, 6, 4):
         yield context.figure(f"reflection_{elements}h", reflected(context, elements, NESTED), "", "<= 0.002")
     for elements in (8, 6, 4):
