@@ -313,7 +313,13 @@ void Simulation::run_stage(const scene::Stage& stage) {
 
 PlacedBlock Simulation::placed_block(const GrainSet& grains) const {
   try {
-    return place_block(*scene_.block, scene_.ground.box, grains);
+    PlacedBlock placed = place_block(*scene_.block, scene_.ground.box, grains);
+    // the level at rest is that of the whole packing, the same in every model, however small the zone; what the grains have
+    // settled is seen on those that this model has
+    const GrainSet whole{packing_.position, packing_.radius, {}};
+    placed.surface_level += mean_surface_level(scene_.ground.box, whole, *scene_.block) -
+                            mean_surface_level(scene_.ground.box, assembly_.grains, *scene_.block);
+    return placed;
   } catch (const std::runtime_error& problem) {
     throw ScenarioError(problem.what());
   }
