@@ -376,3 +376,15 @@ TEST_CASE("a scene far away counts from an origin of its own") {
   CHECK(moved("7.3", 0).scene.origin == Point{});
   CHECK(moved("7.3", 0).scene.ground.box.lo[0] == 7.3);
 }
+
+TEST_CASE("a zone left open is read, and is nobody's box yet") {
+  const ReadResult read = tiny({"coupling.bridging.zone=\"auto\"", "mesh.size=0.01 m"});  // the mesh will be chosen too
+  CHECK(read.scene.grains.zone_to_choose);
+  CHECK_FALSE(read.scene.grains.zone.has_value());
+  const auto effective = nlohmann::json::parse(read.effective);
+  CHECK(effective["coupling"]["zone"] == "auto");
+  CHECK(effective["coupling"]["target_error"] == 0.03);
+  CHECK_FALSE(tiny().scene.grains.zone_to_choose);
+  CHECK_FALSE(tiny({"coupling.bridging.zone=\"auto\"", "model=edge"}).scene.grains.zone_to_choose);
+  CHECK_THROWS_AS(tiny({"coupling.bridging.zone=\"large\""}), SceneError);
+}

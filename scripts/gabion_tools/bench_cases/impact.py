@@ -76,5 +76,5 @@ def jobs(context):
     yield {"label": "bridging, +-4.1 m, strict rows", "knob": "rows", "measure": lambda: measure(context, bridging(4.1, **{"coupling.bridging.rows": "strict"}))}
     yield {"label": "bridging, +-4.1 m, half the step", "knob": "step", "measure": lambda: measure(context, bridging(4.1, **{"run.step_fraction": 0.45}))}
     yield {"label": "bridging, +-4.1 m, weights' floor 0.1", "knob": "weights", "measure": lambda: measure(context, bridging(4.1, **{"coupling.bridging.weight_floor": 0.1}))}
-    for half in (3.75, 3.0, 2.6, 2.25):
+    for half in (3.75, 3.0, 2.6, 2.25, 2.1):
         yield {"label": f"edge, zone +-{half} m", "knob": "zone", "measure": lambda half=half: measure(context, edge(half))}
