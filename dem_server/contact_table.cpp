@@ -6,6 +6,9 @@
 namespace gabion::dem {
 namespace {
 
+/// Pairs with a larger gap at rest, over the sum of their radii, are no neighbours: they meet only when grains travel.
+constexpr double neighbour_gap = 0.0125;
+
 void reserve(ContactTable& table, const ContactSource& source, std::size_t pairs) {
   table.start.assign(source.grains.size() + 1, 0);
   table.second.reserve(pairs);
@@ -87,8 +90,12 @@ double contact_share(const Grains& grains, std::size_t i, std::size_t j, double 
 }
 
 double contact_weight(const ContactSource& source, std::size_t i, std::size_t j, Vec branch) {
-  if (source.weights.border()) return source.weights.share_of_line(source.rest[i], branch);
-  if (source.weights.width <= 0.0) return 1.0;
+  const engine::WeightField& weights = source.weights;
+  if (!weights.border() && weights.width <= 0.0) return 1.0;
+  const double ri = source.grains.radius[i], rj = source.grains.radius[j];
+  if (norm(branch) > (1.0 + neighbour_gap) * (ri + rj))
+    return std::min(weights.of_grain(source.rest[i], ri), weights.of_grain(source.rest[i] + branch, rj));
+  if (weights.border()) return weights.share_of_line(source.rest[i], branch);
   const double share = contact_share(source.grains, i, j, norm(branch));
   return source.weights.at(source.rest[i] + splat(share) * branch);
 }

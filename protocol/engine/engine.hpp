@@ -66,6 +66,15 @@ struct WeightField {
     return std::fmax(floor, in_face * (to - from));
   }
 
+  /// Weight of a grain of radius r [m] at x on its own: w(x), or at a border its share inside the outer box.
+  double of_grain(Vec x, double r) const {
+    if (!border()) return at(x);
+    double nearest = INFINITY;
+    for (int axis = 0; axis < 3; ++axis)
+      nearest = std::fmin(nearest, std::fmin(x[axis] - outer_lo[axis], outer_hi[axis] - x[axis]));
+    return std::fmin(1.0, std::fmax(floor, 0.5 + 0.5 * nearest / r));
+  }
+
   double at(Vec x) const {
     if (width <= 0.0) return 1.0;
     double nearest = INFINITY;

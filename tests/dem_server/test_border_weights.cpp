@@ -71,3 +71,35 @@ TEST_CASE("a pair that nearly touches across the border costs no stable step") {
   };
   CHECK(limit(true) >= 0.9 * limit(false));
 }
+
+TEST_CASE("a grain thrown out of the pure zone lands on a light one of the overlap or border without a jolt") {
+  const double r = 0.5, fall = 0.5, dt = 0.03;
+  for (const bool bridging : {true, false}) {
+    INFO((bridging ? "bridging" : "border"));
+    const double height = bridging ? 0.1 : -0.39;
+    Scene scene;
+    scene.engine.weights.outer_lo[2] = bridging ? 0.0 : 0.1;
+    scene.engine.weights.width = bridging ? 5.0 : 0.0;
+    scene.engine.weights.floor = 0.02;
+    // the light one has a bond to a neighbour beside it, along the border
+    scene.grains({vec(0, 0, 12), vec(0, 0, height), vec(2 * r, 0, height)}, {r, r, r}, elastic_material());
+    scene.engine.make_bonds(0.0);
+    scene.prepare(Geometry::updated);
+    const double heavy = scene.engine.motion.mass[0], light = scene.engine.motion.mass[1];
+    REQUIRE(light < 0.05 * heavy);
+    // set down above the light one: at rest the two are 12 m apart
+    scene.set("displacement", {vec(0, 0, height + 2 * r + 0.05 - 12), Vec{}, Vec{}});
+    scene.engine.prepare();
+    scene.set("velocity", {vec(0, 0, -fall), Vec{}, Vec{}});
+    const double before = 0.5 * heavy * fall * fall;
+    double fastest = 0.0;
+    for (int k = 0; k < 60; ++k) {
+      scene.step(dt);
+      for (std::size_t g = 0; g < 3; ++g) fastest = std::max(fastest, norm(scene.velocity(g)));
+    }
+    CHECK(fastest > 1.5 * fall);  // they did meet
+    CHECK(fastest < 2.5 * fall);  // a light body leaves a heavy one at most twice as fast as that came
+    CHECK(scene.velocity(0)[2] == Approx(-fall).epsilon(0.1));
+    CHECK(scene.engine.ledger().balance() == Approx(before).epsilon(0.01));
+  }
+}
