@@ -31,7 +31,7 @@ void reserve(ContactTable& table, const ContactSource& source, std::size_t pairs
 void append_new(ContactTable& table, const ContactSource& source, const Pair& pair, bool bond) {
   const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
   Vec branch = source.rest[j] - source.rest[i] + source.domain.offset(pair.image);
-  const double weight = contact_weight(source, i, j, branch);
+  const double weight = contact_weight(source, i, j, branch, bond);
   const double length = norm(branch);
   const double rest = bond ? length : source.grains.radius[i] + source.grains.radius[j];
   branch[3] = rest;
@@ -89,11 +89,11 @@ double contact_share(const Grains& grains, std::size_t i, std::size_t j, double 
   return std::clamp(0.5 + 0.5 * (ri - rj) / distance, 0.0, 1.0);
 }
 
-double contact_weight(const ContactSource& source, std::size_t i, std::size_t j, Vec branch) {
+double contact_weight(const ContactSource& source, std::size_t i, std::size_t j, Vec branch, bool bond) {
   const engine::WeightField& weights = source.weights;
   if (!weights.border() && weights.width <= 0.0) return 1.0;
   const double ri = source.grains.radius[i], rj = source.grains.radius[j];
-  if (norm(branch) > (1.0 + neighbour_gap) * (ri + rj))
+  if (!bond && norm(branch) > (1.0 + neighbour_gap) * (ri + rj))
     return std::min(weights.of_grain(source.rest[i], ri), weights.of_grain(source.rest[i] + branch, rj));
   if (weights.border()) return weights.share_of_line(source.rest[i], branch);
   const double share = contact_share(source.grains, i, j, norm(branch));

@@ -60,10 +60,10 @@ struct ContactSource {
 /// Share of the way from i to j at which grain i touches grain j at rest; outside the pair never.
 double contact_share(const Grains& grains, std::size_t i, std::size_t j, double distance);
 
-/// Weight at the contact point at rest for neighbours. Grains that are none at rest, such as one thrown out of the pure zone
+/// Weight at the contact point at rest for bonds and neighbours. Grains that are none at rest, such as one thrown out of the pure zone
 /// that lands on the overlap, touch with the smaller of their two weights: more would be too stiff for the lighter one, whose
 /// mass has its own weight, and unstable. branch: from i to j at rest, m.
-double contact_weight(const ContactSource& source, std::size_t i, std::size_t j, Vec branch);
+double contact_weight(const ContactSource& source, std::size_t i, std::size_t j, Vec branch, bool bond);
 
 /// Bonds, stress-free as they stand at rest, and candidates, free of force until they touch.
 /// Both sorted.

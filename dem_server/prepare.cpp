@@ -278,7 +278,7 @@ void DemEngine::set_masses() {
     branch[3] = 0.0;
     const double gap = norm(branch) - grains_.radius[i] - grains_.radius[static_cast<std::size_t>(table.second[c])];
     if (!(table.state[c] & bonded) && gap > near) return;
-    const double w = contact_weight(source(), i, table.second[c], branch);
+    const double w = contact_weight(source(), i, table.second[c], branch, true);
     for (const std::size_t g : {i, static_cast<std::size_t>(table.second[c])}) {
       total[g] += w;
       ++count[g];
