@@ -156,4 +156,9 @@ CASES = (
          [INTERFACE + "a cut takes what it leaves hanging, and what then hangs, but nothing that was loose before or is held"]),
     case(27, "energy balance beyond its tolerance", "a run that went wrong looks finished",
          "status 3, with the file to look at; a ledger that is no number counts as beyond", "", ["system: failures"]),
+    case(28, "a thrown grain lands on the overlap or the border",
+         "the light grain it hits has the frequency of a heavy contact, and energy grows without bound",
+         "one that weighs fifty times as much: an elastic collision, energy kept; grains that are no neighbours at rest touch with the "
+         "smaller of their weights", "",
+         [DEM + "a grain thrown out of the pure zone lands on a light one of the overlap or border without a jolt"]),
 )
