@@ -21,7 +21,7 @@ constexpr std::array launcher_logs = {"dem_server.log", "continuum_server.log", 
 // Names and endings of what runs and their reports write. Nothing else is ever removed.
 constexpr std::array run_files = {"summary.json", "scene.effective.json", "run.log", "results.h5", "results.xdmf",
                                   "grains.vtkhdf", "mesh.vtkhdf", "report.html", "checkpoint",
-                                  "laboratory.json"};
+                                  "laboratory.json", "zone.json"};
 constexpr std::array run_endings = {".csv", ".png", ".tmp"};
 
 template <std::size_t n>

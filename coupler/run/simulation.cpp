@@ -15,8 +15,6 @@ using Clock = std::chrono::steady_clock;
 
 /// Beyond this share of the ground's smallest side the interface's motion is looked at for rotation.
 constexpr double look_for_rotation = 0.1;
-/// Share of sliding or broken contacts among the tied grains above which the run warns.
-constexpr double tolerable_damage = 0.01;
 /// Time between two rows of block.csv, s, and the steps between them at most.
 constexpr double block_row_time = 1e-3;
 constexpr double most_block_row_steps = 50;
@@ -53,12 +51,8 @@ nlohmann::json Simulation::run() {
   }
   progress_.end_line();
   recorder_->close();
-  if (largest_tied_damage_ > tolerable_damage)
-    warnings_.push_back(number(100.0 * largest_tied_damage_) + " % of the contacts of tied grains slid or broke, more than " +
-                        number(100.0 * tolerable_damage) + " %: the mesh beside them cannot follow. Enlarge coupling.zone, so that the "
-                        "overlap or border lies in ground that stays elastic");
   if (zone_watch_)
-    if (const std::string advice = zone_watch_->advice(recorder_->energy().largest_energy()); !advice.empty()) warnings_.push_back(advice);
+    for (std::string& advice : zone_watch_->advice(recorder_->energy().largest_energy(), largest_tied_damage_)) warnings_.push_back(std::move(advice));
   nlohmann::json result = summary();
   result["wall"]["total"] = std::chrono::duration<double>(Clock::now() - begin).count();
   folder_.write_json("summary.json", result);

@@ -16,6 +16,8 @@ std::string text_of(double value) {
   return text;
 }
 
+std::string per_cent(double share) { return text_of(100.0 * share) + " %"; }
+
 }  // namespace
 
 ZoneWatch::ZoneWatch(const Zone& zone, const GrainSet& grains, const InterfaceRows* rows)
@@ -23,6 +25,7 @@ ZoneWatch::ZoneWatch(const Zone& zone, const GrainSet& grains, const InterfaceRo
   if (!rows_ || !zone.has_interface()) return;
   const std::size_t n = grains.radius.size();
   width_ = 2.0 * std::accumulate(grains.radius.begin(), grains.radius.end(), 0.0) / static_cast<double>(n);
+  for (const std::int32_t c : rows_->hats.columns) hats_ = std::max(hats_, static_cast<std::size_t>(c) + 1);
   // edge-to-edge has no overlap: two diameters beside the border are looked at
   const double depth = std::max(zone.overlap(), 2.0 * width_);
   shells_a_face_ = static_cast<std::size_t>(std::ceil(depth / width_ - 1e-9));
@@ -58,9 +61,7 @@ void ZoneWatch::look(std::span<const double> yield, std::span<const double> velo
 
 double ZoneWatch::unresolved(std::span<const double> velocity) const {
   const SparseRows& hats = rows_->hats;
-  std::size_t count = 0;
-  for (const std::int32_t c : hats.columns) count = std::max(count, static_cast<std::size_t>(c) + 1);
-  std::vector<double> mass(count, 0.0), momentum(3 * count, 0.0);
+  std::vector<double> mass(hats_, 0.0), momentum(3 * hats_, 0.0);
   const auto each = [&](auto&& visit) {
     for (std::size_t t = 0; t < rows_->hat_grains.size(); ++t)
       for (std::int32_t k = hats.row_ptr[t]; k < hats.row_ptr[t + 1]; ++k)
@@ -107,6 +108,13 @@ double ZoneWatch::missed(int face) const {
   return largest;
 }
 
+bool ZoneWatch::large_enough() const {
+  if (shells_.empty() || !looked_) return false;
+  for (int face = 0; face < 6; ++face)
+    if (missed(face) > tolerable_damage) return false;
+  return true;
+}
+
 nlohmann::json ZoneWatch::verdict(double energy) const {
   if (shells_.empty() || !looked_) return nullptr;
   nlohmann::json result{{"yield_ratio", yield_ratio_}};
@@ -129,28 +137,34 @@ nlohmann::json ZoneWatch::verdict(double energy) const {
   result["too_small_by"] = too_small;
   const double share = energy > 0.0 ? unresolved_ / energy : 0.0;
   if (needs_velocity()) result["unresolved_energy"] = share;
-  result["large_enough"] = too_small.empty();
+  result["large_enough"] = large_enough();
   result["mesh_fine_enough"] = share <= tolerable_energy;
   return result;
 }
 
-std::string ZoneWatch::advice(double energy) const {
+std::vector<std::string> ZoneWatch::advice(double energy, double tied_damage) const {
+  std::vector<std::string> words;
   const nlohmann::json found = verdict(energy);
-  if (found.is_null()) return "";
-  std::string words;
+  if (tied_damage > tolerable_damage)
+    words.push_back(per_cent(tied_damage) + " of the contacts of tied grains slid or broke, more than " + per_cent(tolerable_damage) +
+                    (large_enough() ? ": only where the mesh carries little, so that the zone is large enough; a larger coupling.zone would leave none"
+                                    : ": the mesh beside them cannot follow. Enlarge coupling.zone, so that the overlap or border lies in "
+                                      "ground that stays elastic"));
+  if (found.is_null()) return words;
   if (!found["large_enough"]) {
-    words = "the zone of the grains is too small: in the overlap up to " + text_of(100.0 * found["damaged_share"].get<double>()) +
-            " % of the contacts slid or broke, with the mesh's weight " + text_of(100.0 * found["missed_share"].get<double>()) + " %, more than " +
-            text_of(100.0 * tolerable_damage) + " %. Move its";
+    std::string move = "the zone of the grains is too small: in the overlap up to " + per_cent(found["damaged_share"]) +
+                       " of the contacts slid or broke, with the mesh's weight " + per_cent(found["missed_share"]) + ", more than " +
+                       per_cent(tolerable_damage) + ". Move its";
     for (const auto& [face, by] : found["too_small_by"].items()) {
       const bool through = by.get<double>() > (static_cast<double>(shells_a_face_) - 0.5) * width_;
-      words += " " + face + " face out by " + (through ? "more than " : "") + text_of(by) + " m,";
+      move += " " + face + " face out by " + (through ? "more than " : "") + text_of(by) + " m,";
     }
-    words.back() = '.';
+    move.back() = '.';
+    words.push_back(move);
   }
   if (!found["mesh_fine_enough"])
-    words += std::string(words.empty() ? "" : " ") + "Motion that the mesh cannot follow came to the overlap with " +
-             text_of(100.0 * found["unresolved_energy"].get<double>()) + " % of the run's energy: lower mesh.size, move the zone's faces out, or widen the overlap.";
+    words.push_back("motion that the mesh cannot follow came to the overlap with " + per_cent(found["unresolved_energy"]) +
+                    " of the run's energy: lower mesh.size, move the zone's faces out, or widen the overlap");
   return words;
 }
 

@@ -36,10 +36,12 @@ class ZoneWatch {
 
   const std::vector<double>& damage() const { return damage_; }  ///< [n]
 
+  /// False before the first look, and where the ground yields that the mesh shares.
+  bool large_enough() const;
   /// What summary.json says under "zone"; null without an interface or before the first look. energy: largest of the run, J.
   nlohmann::json verdict(double energy) const;
-  /// The verdict in words; empty where nothing needs attention.
-  std::string advice(double energy) const;
+  /// What needs attention, in words. tied_damage: largest share of the contacts of tied grains that slid or were broken.
+  std::vector<std::string> advice(double energy, double tied_damage) const;
 
   /// For checkpoints.
   nlohmann::json memory() const;
@@ -60,6 +62,7 @@ class ZoneWatch {
   double width_ = 0.0;                ///< of a shell, m
   std::vector<std::int32_t> shell_;   ///< of each grain: index into shells_, -1 inside
   std::size_t shells_a_face_ = 0;
+  std::size_t hats_ = 0;              ///< of the multiplier mesh
   std::vector<Shell> shells_;         ///< by face, then from the outer face inwards
   std::vector<double> damage_;
   double yield_ratio_ = 0.0, unresolved_ = 0.0;

@@ -40,7 +40,7 @@ TEST_CASE("a zone whose overlap stays whole is large enough") {
   const auto verdict = watch.verdict(1.0);
   CHECK(verdict["large_enough"] == true);
   CHECK(verdict["damaged_share"] == 0.0);
-  CHECK(watch.advice(1.0).empty());
+  CHECK(watch.advice(1.0, 0.0).empty());
   CHECK(watch.damage()[10] == Approx(0.9));
 }
 
@@ -55,14 +55,18 @@ TEST_CASE("damage in the overlap says which face to move and by how much") {
   CHECK(verdict["missed_share"].get<double>() == Approx(0.3 * (1.0 - 2.5 / 4.0)));
   REQUIRE(verdict["too_small_by"].size() == 1);
   CHECK(verdict["too_small_by"]["zmin"].get<double>() == Approx(2.0));  // shells 2 and 3 of four
-  CHECK(watch.advice(1.0).find("zmin face out by 2 m") != std::string::npos);
+  REQUIRE(watch.advice(1.0, 0.0).size() == 1);
+  CHECK(watch.advice(1.0, 0.0)[0].find("zmin face out by 2 m") != std::string::npos);
+  REQUIRE(watch.advice(1.0, 0.2).size() == 2);
+  CHECK(watch.advice(1.0, 0.2)[0].find("cannot follow") != std::string::npos);
 }
 
 TEST_CASE("damage up to the outer face means more than the whole overlap") {
   const Bar bar;
   ZoneWatch watch(bar.zone, bar.grains, &bar.rows);
   watch.look(bar.yield([](std::size_t) { return 0.5; }), {});
-  CHECK(watch.advice(1.0).find("zmin face out by more than 4 m") != std::string::npos);
+  REQUIRE(watch.advice(1.0, 0.0).size() == 1);
+  CHECK(watch.advice(1.0, 0.0)[0].find("zmin face out by more than 4 m") != std::string::npos);
 }
 
 TEST_CASE("a little damage where the mesh carries almost nothing is reported, not flagged") {
@@ -72,6 +76,10 @@ TEST_CASE("a little damage where the mesh carries almost nothing is reported, no
   const auto verdict = watch.verdict(1.0);
   CHECK(verdict["damaged_share"].get<double>() == Approx(0.05));
   CHECK(verdict["large_enough"] == true);
+  // the share is told, and does not contradict the verdict
+  REQUIRE(watch.advice(1.0, 0.02).size() == 1);
+  CHECK(watch.advice(1.0, 0.02)[0].find("2 % of the contacts of tied grains") == 0);
+  CHECK(watch.advice(1.0, 0.02)[0].find("large enough") != std::string::npos);
 }
 
 TEST_CASE("motion within an element is unresolved, motion of all is not") {
