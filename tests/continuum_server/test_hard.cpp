@@ -1,30 +1,14 @@
 // Hard cases of the mesh alone: numbers that are none, denormals.
 
-#include <bit>
 #include <catch2/catch.hpp>
 
 #include "solid_fixture.hpp"
+#include "tests/denormals.hpp"
 #include "tests/figure.hpp"
 
 using namespace gabion;
 using namespace gabion::continuum;
 using engine::vec;
-
-namespace {
-
-bool denormal(double x) {
-  const auto bits = std::bit_cast<std::uint64_t>(x);
-  return (bits & 0x7ff0000000000000ull) == 0 && (bits & 0x000fffffffffffffull) != 0;
-}
-
-std::size_t denormals(const VecField& field) {
-  std::size_t count = 0;
-  for (const Vec v : field)
-    for (int axis = 0; axis < 3; ++axis) count += denormal(v[axis]);
-  return count;
-}
-
-}  // namespace
 
 TEST_CASE("a node that is no number is named in the step in which it becomes so") {
   for (const int threads : {1, 2})

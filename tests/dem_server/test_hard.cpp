@@ -1,31 +1,16 @@
 // Hard cases of grains alone: overlaps at the start, steps longer than the search margin, a bond that breaks where a
 // contact takes over, denormals.
 
-#include <bit>
 #include <xmmintrin.h>
 
 #include "fixture.hpp"
+#include "tests/denormals.hpp"
 #include "tests/figure.hpp"
 
 using namespace gabion::dem;
 using namespace gabion::dem::testing;
+using gabion::denormals;
 using gabion::figure;
-
-namespace {
-
-bool denormal(double x) {
-  const auto bits = std::bit_cast<std::uint64_t>(x);
-  return (bits & 0x7ff0000000000000ull) == 0 && (bits & 0x000fffffffffffffull) != 0;
-}
-
-std::size_t denormals(const VecField& field) {
-  std::size_t count = 0;
-  for (const Vec v : field)
-    for (int axis = 0; axis < 3; ++axis) count += denormal(v[axis]);
-  return count;
-}
-
-}  // namespace
 
 TEST_CASE("grains that overlap at the start get their stored energy and no more, or are refused") {
   const double r = 0.5, k = 0.5 * frictional_material(0.0).normal_stiffness * r;

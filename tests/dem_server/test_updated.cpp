@@ -330,3 +330,48 @@ TEST_CASE("trouble is named") {
   CHECK_THROWS_WITH(sick.engine.set_field("force", {}), Catch::Contains("no field"));
   CHECK_THROWS_WITH(sick.set("velocity", {vec(0, 0, 0)}), Catch::Contains("3 values for 2"));
 }
+
+TEST_CASE("yield says how many contacts slide or are broken, and what the others use of their strength") {
+  std::vector<std::uint64_t> shape;
+  const double r = 0.5, friction = 0.5;
+  const auto pressed = [&](double sideways) {
+    auto scene = std::make_unique<Scene>();
+    scene->grains({vec(0, 0, 0), vec(0.99, 0, 0)}, {r, r}, frictional_material(friction));
+    scene->prepare(Geometry::updated, false);
+    scene->set("velocity", {Vec{}, vec(0, sideways, 0)});
+    scene->step(1e-4, 20);
+    return scene;
+  };
+  const auto held = pressed(0.2);
+  const auto f = *held->engine.field("contact", shape);
+  REQUIRE(shape[0] == 1);
+  const Vec n = vec(f[2], f[3], f[4]), force = vec(f[5], f[6], f[7]);
+  const double normal = std::fabs(dot(force, n)), shear = norm(force - splat(dot(force, n)) * n);
+  REQUIRE(shear > 0.01 * friction * normal);
+  auto yield = *held->engine.field("yield", shape);
+  REQUIRE(shape == std::vector<std::uint64_t>{2, 3});
+  for (const std::size_t g : {0, 1}) {
+    CHECK(yield[3 * g] == 1.0);
+    CHECK(yield[3 * g + 1] == 0.0);
+    CHECK(yield[3 * g + 2] == Approx(shear / (friction * normal)).epsilon(0.02));
+  }
+  yield = *pressed(20.0)->engine.field("yield", shape);
+  CHECK(yield == std::vector<double>{1, 1, 0, 1, 1, 0});  // slides
+
+  // a bond at half its strength, and beyond it
+  GrainMaterial bonds = frictional_material(friction);
+  bonds.normal_strength = bonds.shear_strength = 1e4;
+  const double strength = bonds.normal_strength * r * r, stiffness = 0.5 * bonds.normal_stiffness * r;
+  for (const double share : {0.5, 1.5}) {
+    Scene scene;
+    scene.grains({vec(0, 0, 0), vec(1, 0, 0)}, {r, r}, bonds);
+    scene.engine.make_bonds(0.0);
+    scene.prepare(Geometry::updated);
+    scene.set("displacement", {Vec{}, vec(share * strength / stiffness, 0, 0)});
+    scene.step(1e-6, 2);
+    yield = *scene.engine.field("yield", shape);
+    CHECK(yield[0] == 1.0);
+    CHECK(yield[1] == (share > 1.0 ? 1.0 : 0.0));
+    CHECK(yield[2] == Approx(share > 1.0 ? 0.0 : share).epsilon(1e-3));
+  }
+}
