@@ -1,7 +1,9 @@
 """gabion bench error: speed against error, scene by scene, on one page. What was run already is not run again."""
 
+import importlib
 import json
 import os
+import pkgutil
 import sys
 import time
 import traceback
@@ -9,7 +11,7 @@ from pathlib import Path
 
 from gabion_tools import build, packages
 from gabion_tools.errors import Failure, UserError
-from gabion_tools.places import BUILD, PYTHON, short
+from gabion_tools.places import BUILD, PYTHON, executable, short
 
 
 def arguments(parser):
@@ -23,9 +25,6 @@ def arguments(parser):
 
 def registry():
     """{name: module}; names have hyphens where files have underscores."""
-    import importlib
-    import pkgutil
-
     from gabion_tools import bench_cases
     return {module.name.replace("_", "-"): importlib.import_module(f"gabion_tools.bench_cases.{module.name}")
             for module in sorted(pkgutil.iter_modules(bench_cases.__path__), key=lambda m: m.name)}
@@ -87,20 +86,10 @@ def collect(name, module, context, element_cost):
 
 
 def element_costs(folder, context):
-    """Time of an element's step over a grain's, {"frozen": ..., "updated": ...}, measured once for these programs."""
+    """As bench_points.element_costs, measured once for these programs."""
+    from gabion_tools import bench_points
     from gabion_tools.verify_cases import kernels
-    import re
-    import subprocess
-
-    from gabion_tools.places import executable
     kept = folder / f"kernels-{context.programs}.json"
     if not kept.exists():
-        speed = {}
-        for program in ("bench_dem", "bench_continuum"):
-            text = subprocess.run([str(executable(program))], capture_output=True, text=True, timeout=kernels.DEADLINE, check=True).stdout
-            for found in filter(None, map(kernels.LINE.match, text.splitlines())):
-                speed[re.sub(r"\s+", " ", found["case"].strip())] = float(found["value"])
-        kept.write_text(json.dumps(speed), encoding="utf-8")
-    speed = json.loads(kept.read_text(encoding="utf-8"))
-    brick = next(v for k, v in speed.items() if k.startswith("bricks"))
-    return {"frozen": speed["bonded, frozen"] / brick, "updated": next(v for k, v in speed.items() if "breakable" in k) / brick}
+        kept.write_text(json.dumps(kernels.speeds(executable)), encoding="utf-8")
+    return bench_points.element_costs(json.loads(kept.read_text(encoding="utf-8")))

@@ -5,11 +5,10 @@ import html
 import math
 
 from gabion_tools import report_page
-from gabion_tools.bench_points import HEADLINES, front, speedup
-from gabion_tools.style import MODEL_COLOURS, plt, save
+from gabion_tools.bench_points import COSTS, HEADLINES, front, speedup
+from gabion_tools.style import MODEL_COLOURS, plt
 
-COSTS = (("counts", "grain-steps + element cost x element-steps", lambda p: p.counts),
-         ("wall", "time of stepping [s]", lambda p: p.wall))
+AXES = {"counts": "grain-steps + element cost x element-steps", "wall": "time of stepping [s]"}
 FLOOR = 1e-5  # errors below it are drawn there
 
 
@@ -17,7 +16,7 @@ def draw(folder, name, title, points, reference, floor):
     """One figure a scene: error against both costs, the front, the all-grain line and the scatter of the reference."""
     figure, panels = plt.subplots(1, 2, figsize=(13.5, 6.4), sharey=True)
     shown = [p for p in points if not p.failed and p.model != "dem" or p.knob == "grain size"]
-    for panel, (_, axis, cost) in zip(panels, COSTS):
+    for panel, (which, cost) in zip(panels, COSTS.items()):
         for k, point in enumerate(shown):
             error, uncertainty = max(point.error, FLOOR), point.uncertainty
             colour = MODEL_COLOURS.get(point.model, "k")
@@ -34,7 +33,7 @@ def draw(folder, name, title, points, reference, floor):
                            textcoords="offset points", color=MODEL_COLOURS["dem"], fontsize=9)
         if floor:
             panel.axhline(floor, color="0.5", ls=":", lw=1.0)
-        panel.set(xscale="log", yscale="log", xlabel=axis)
+        panel.set(xscale="log", yscale="log", xlabel=AXES[which])
     panels[0].set(ylabel="error against the reference")
     if floor:
         panels[0].annotate("standard error of all grains alone", (0.01, floor), xycoords=("axes fraction", "data"), fontsize=8, color="0.4",
@@ -61,7 +60,7 @@ def number(value):
 def row(point, reference):
     parts = "; ".join(f"{name} {100 * mean:+.2f}" + (f" +- {100 * error:.2f}" if math.isfinite(error) else "") + " %"
                       for name, (mean, error) in point.means.items())
-    ratios = [number(cost(reference) / cost(point)) if reference and cost(point) > 0 else "-" for _, _, cost in COSTS]
+    ratios = [number(cost(reference) / cost(point)) if reference and cost(point) > 0 else "-" for cost in COSTS.values()]
     return [point.label, point.knob, point.failed or parts, number(100 * point.error) if not point.failed else "-", number(point.grains),
             number(point.elements), number(point.steps), number(point.counts), number(point.wall), *ratios, point.note]
 
@@ -72,7 +71,7 @@ HEAD = ("point", "changed", "errors", "worst [%]", "grains", "elements", "steps"
 def headlines(points, reference):
     """[(limit, which cost, factor, point)]"""
     good = [p for p in points if not p.failed]
-    return [(limit, which, *speedup(good, reference, limit, cost)) for limit in HEADLINES for which, _, cost in COSTS]
+    return [(limit, which, *speedup(good, reference, limit, cost)) for limit in HEADLINES for which, cost in COSTS.items()]
 
 
 def sentence(limit, which, factor, point):

@@ -30,9 +30,7 @@ class BenchContext:
 
     def run_scene(self, scene, overrides=None, threads=None):
         """A RunResult. Raises Failure where the run did not end with 0."""
-        if isinstance(overrides, dict):
-            overrides = [f"{key}={value if isinstance(value, str) else json.dumps(value)}" for key, value in overrides.items()]
-        changes, path = list(overrides or []), scenes.find(str(scene))
+        changes, path = scenes.changes(overrides), scenes.find(str(scene))
         text = json.dumps([self.programs, path.read_text(encoding="utf-8"), changes, threads])
         folder = self.folder / f"{path.stem}-{hashlib.sha256(text.encode()).hexdigest()[:16]}"
         mark = folder / "done.json"

@@ -74,6 +74,13 @@ def models(text):
     return chosen
 
 
+def changes(overrides):
+    """A dict of overrides as a list of 'key=value'; a list stays."""
+    if isinstance(overrides, dict):
+        return [f"{key}={value if isinstance(value, str) else json.dumps(value)}" for key, value in overrides.items()]
+    return list(overrides or [])
+
+
 def override_arguments(overrides):
     """--set words for the coupler. Raises UserError where one is not key=value."""
     words = []

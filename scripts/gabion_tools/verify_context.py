@@ -63,10 +63,7 @@ class Context:
         The same scene, overrides and threads are run once per verify call; repeat > 0 asks for a further run.
         Raises Failure when the coupler does not end with 0, unless expect_success is False.
         """
-        if isinstance(overrides, dict):
-            overrides = [f"{key}={value if isinstance(value, str) else json.dumps(value)}"
-                         for key, value in overrides.items()]
-        changes = list(overrides or []) + self.overrides
+        changes = scenes.changes(overrides) + self.overrides
         if self.seed is not None:
             changes.append(f"grains.seed={self.seed}")
         path = scenes.find(str(scene))
@@ -74,8 +71,7 @@ class Context:
         if key not in self.runs:
             folder = self.root / f"{path.stem}-{key}"
             folder.mkdir(parents=True)
-            if any('zone="auto"' in change for change in changes):
-                changes, _ = zone_size.resolve(path, changes, threads, say=lambda text: None)
+            changes, _ = zone_size.resolve(path, changes, threads, say=lambda text: None)
             code = processes.couple(path, scenes.override_arguments(changes), folder,
                                     run.engines(scenes.model(path, changes), threads), quiet=True)
             self.runs[key] = RunResult(folder, code)

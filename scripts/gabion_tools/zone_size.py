@@ -60,8 +60,8 @@ def scaled(radius, factor):
     return f"{factor * metres(radius)!r} m"
 
 
-def volume(sides):
-    return max(0.0, sides[0]) * max(0.0, sides[1]) * max(0.0, sides[2])
+def volume(corners):
+    return math.prod(max(0.0, high - low) for low, high in zip(*corners))
 
 
 class Sizing:
@@ -80,11 +80,7 @@ class Sizing:
         self.target = float(self.values["coupling"]["target_error"])
         per_grain = math.pi / 6.0 * self.diameter ** 3 / float(self.values["grains"]["solid_fraction"])
         self.density = 1.0 / per_grain  # grains per m3, of equal ones
-        self.coarsening = max(1.0, (volume(self.sides(self.ground)) * self.density / COARSE_GRAINS) ** (1.0 / 3.0))
-
-    @staticmethod
-    def sides(corners):
-        return [hi - lo for lo, hi in zip(*corners)]
+        self.coarsening = max(1.0, (volume(self.ground) * self.density / COARSE_GRAINS) ** (1.0 / 3.0))
 
     def quick_changes(self):
         """The scene with all grains, coarse, until the load is over."""
@@ -152,8 +148,8 @@ class Sizing:
         """Grain-steps and element-steps of one step, in grain-steps."""
         inner = [[a if a == g else a + overlap for a, g in zip(zone[0], self.ground[0])],
                  [a if a == g else a - overlap for a, g in zip(zone[1], self.ground[1])]]
-        grains = volume(self.sides(zone)) * self.density
-        elements = (volume(self.sides(self.ground)) - volume(self.sides(inner))) / element ** 3
+        grains = volume(zone) * self.density
+        elements = (volume(self.ground) - volume(inner)) / element ** 3
         return grains + ELEMENT_COST * elements, grains, elements
 
     def choose(self, seen):
@@ -179,7 +175,7 @@ class Sizing:
         element = min(sizes, key=lambda h: self.cost(*self.zone(hole, h), h)[0])
         overlap, zone = self.zone(hole, element)
         total, grains, elements = self.cost(overlap, zone, element)
-        whole = volume(self.sides(self.ground)) * self.density
+        whole = volume(self.ground) * self.density
         if zone == self.ground or total >= whole:
             text.append("the zone would fill the ground, or cost as much: all grains (model = dem); a larger ground would leave room for a mesh")
             return {"changes": ["model=dem"], "text": text, "seen": seen}
@@ -192,13 +188,13 @@ class Sizing:
         if overlap:
             changes.append(f"{key}.overlap={overlap:.6g} m")
         return {"changes": changes, "text": text, "seen": seen, "zone": zone, "overlap": overlap, "element": element,
-                "volume": volume(self.sides(zone)), "cost_share": total / whole}
+                "volume": volume(zone), "cost_share": total / whole}
 
 
 def resolve(scene, changes, threads=None, say=print):
     """The user's changes, with a zone in them where the scene leaves it open. Says what it chose and why."""
     text = Path(scene).read_text(encoding="utf-8", errors="replace")
-    if '"auto"' not in scenes.without_comments(text) + "".join(changes):  # spares most scenes the question
+    if "auto" not in scenes.without_comments(text) + "".join(changes):  # spares most scenes the question
         return list(changes), None
     sizing = Sizing(scene, changes)
     if not sizing.wanted:

@@ -10,7 +10,6 @@ OMITTED = ("grain size of 0.2 m: the same sweep takes an hour a packing; one poi
 
 SCENE = "impact"
 HALF = 6.0  # m, half the ground's width and its depth
-DIAMETER = 0.3
 PARTS = {"penetration": "penetration_60ms", "force": "largest_force_4ms"}
 
 
@@ -70,7 +69,7 @@ def jobs(context):
     for half in (5.25, 4.5, 4.1, 3.75, 3.4, 3.0):
         yield {"label": f"bridging, zone +-{half} m", "knob": "zone", "measure": lambda half=half: measure(context, bridging(half))}
     yield {"label": "bridging, zone = auto", "knob": "zone", "note": "cost of the quick run not counted",
-           "measure": lambda: measure(context, {"model": "bridging", "coupling.bridging.zone": '"auto"'})}
+           "measure": lambda: measure(context, {"model": "bridging", "coupling.bridging.zone": "auto"})}
     yield {"label": "bridging, +-4.5 m, overlap 2.25 m", "knob": "overlap", "measure": lambda: measure(context, bridging(4.5, overlap=2.25))}
     yield {"label": "bridging, +-4.5 m, mesh 1 m, overlap 2 m", "knob": "mesh", "measure": lambda: measure(context, bridging(4.5, overlap=2.0, size=1.0))}
     yield {"label": "bridging, +-4.1 m, strict rows", "knob": "rows", "measure": lambda: measure(context, bridging(4.1, **{"coupling.bridging.rows": "strict"}))}

@@ -23,21 +23,10 @@ def seeds(context):
 
 
 def jobs(context):
-    def measure(scheme, **how):
-        lattice = {"runs": [], "parts": {"reflected": [], "transmitted": []}}
-        for seed in seeds(context):
-            one = column(seed=seed, **how)
-            reflected, through, whole = one.measure(context, scheme)
-            lattice["runs"].append(one.run(context, scheme))
-            lattice["parts"]["reflected"].append(reflected ** 0.5)
-            lattice["parts"]["transmitted"].append((through / whole) ** 0.5 - 1)
-        return lattice["runs"], lattice["parts"]
+    columns = lambda **how: [column(seed=seed, **how) for seed in seeds(context)]  # noqa: E731
+    measure = lambda scheme, **how: lattice_wave.measure(context, columns(**how), scheme)  # noqa: E731
 
-    def whole():
-        runs = [column(seed=seed).run(context, {"model": "dem"}) for seed in seeds(context)]
-        return runs, {"reflected": [0.0] * len(runs), "transmitted": [0.0] * len(runs)}
-
-    yield {"label": "all grains", "knob": "reference", "reference": True, "measure": whole}
+    yield {"label": "all grains", "knob": "reference", "reference": True, "measure": lambda: lattice_wave.whole(context, columns())}
     for overlap in (1.0, 2.0, 4.0):
         yield {"label": f"mortar with sponge, overlap {overlap / 0.5:.0f} h", "knob": "overlap", "measure": lambda overlap=overlap: measure(SCHEMES[SPONGE], overlap=overlap)}
     for element in (0.25, 1.0):

@@ -12,13 +12,12 @@ from gabion_tools.verify_cases import kernels
 
 TITLE = "speed-up over all grains at equal error: impact at 3 %, compression at 1 %"
 
-COSTS = {"counts": lambda p: p.counts, "wall": lambda p: p.wall}
 WANTED = (("impact", impact, 0.03, ("reference", "zone"), {"counts": ">= 15", "wall": ">= 15"}),
           ("compression", compression, 0.01, ("reference", "overlap", "mesh", "zone", "coupling"), {"counts": "report", "wall": "report"}))
 
 
 def run(context):
-    costs = element_costs(context)
+    costs = bench_points.element_costs(kernels.speeds(context.executable))
     for name, module, limit, knobs, goals in WANTED:
         points, reference = [], None
         for job in module.jobs(context):
@@ -28,7 +27,7 @@ def run(context):
             point = bench_points.measured(name, job["label"], job["knob"], runs, parts, costs[module.KERNELS])
             points.append(point)
             reference = point if job.get("reference") else reference
-        for which, cost in COSTS.items():
+        for which, cost in bench_points.COSTS.items():
             factor, best = bench_points.speedup(points, reference, limit, cost)
             yield context.figure(f"{name}_speedup_{which}_at_{round(100 * limit)}pct", factor, "times", goals[which])
             if best:
@@ -36,10 +35,3 @@ def run(context):
                 if math.isfinite(best.uncertainty):  # more than one packing
                     yield context.figure(f"standard error of that error ({which})", best.uncertainty, "", "report")
 
-
-def element_costs(context):
-    """As gabion bench: time of an element's step over a grain's."""
-    speed = {figure["figure"]: figure["value"] for figure in kernels.run(context)}
-    find = lambda word: next(v for k, v in speed.items() if k.startswith(word))  # noqa: E731
-    brick = find("bench_continuum: bricks")
-    return {"frozen": find("bench_dem: bonded, frozen") / brick, "updated": find("bench_dem: breakable bonds") / brick}

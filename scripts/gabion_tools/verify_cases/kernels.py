@@ -14,15 +14,25 @@ LINE = re.compile(r"(?P<case>.*?)\s{2,}.*?(?P<value>[\d.]+) M (?P<unit>particle|
 GOALS = {"particle": "> 1.46", "element": "> 1.68"}
 FRICTIONAL_GOAL = "> 8.06"
 DEADLINE = 300  # s
+PROGRAMS = ("bench_dem", "bench_continuum")
 # the least that the larger scenes need, on one core
 NAMED = {"bonded, frozen": ("bonded_20k_mps", ">= 4e6"), "bricks, isotropic": ("brick_eps", ">= 1e7")}
 
 
+def measured(executable):
+    """The lines of one benchmark program that say a speed."""
+    text = subprocess.run([str(executable)], capture_output=True, text=True, timeout=DEADLINE, check=True).stdout
+    return list(filter(None, map(LINE.match, text.splitlines())))
+
+
+def speeds(executable_of):
+    """{case: million steps/s} of both programs; executable_of: name -> path."""
+    return {row["case"].strip(): float(row["value"]) for program in PROGRAMS for row in measured(executable_of(program))}
+
+
 def run(context):
-    for program in ("bench_dem", "bench_continuum"):
-        text = subprocess.run([str(context.executable(program))], capture_output=True, text=True, timeout=DEADLINE,
-                              check=True).stdout
-        found = list(filter(None, map(LINE.match, text.splitlines())))
+    for program in PROGRAMS:
+        found = measured(context.executable(program))
         if not found:
             yield context.figure(f"{program} printed no speed", False, "", "= True")
         for row in found:

@@ -4,25 +4,24 @@ Coarse grains, 60 ms. Verdict: what summary.json says under "zone". A zone made 
 and must be flagged at every speed.
 """
 
-import json
 import math
 
 import numpy as np
 
+from gabion_tools import zone_size
 from gabion_tools.bench_cases import impact
 from gabion_tools.sample_measure import effective
 
 TITLE = "zone = auto: error, size and verdict on impacts of 5, 13 and 25 m/s"
 
 SPEEDS = (5, 13, 25)
-HAND = impact.bridging(4.5)
+HAND = zone_size.box(impact.box(4.5))
 TOO_SMALL = impact.bridging(2.5, overlap=1.5)
 TARGET = 0.03
 
 
 def volume(run):
-    lo, hi = ([float(str(v).split()[0]) for v in corner] for corner in effective(run)["coupling"]["zone"])
-    return math.prod(b - a for a, b in zip(lo, hi))
+    return zone_size.volume(zone_size.box(effective(run)["coupling"]["zone"]))
 
 
 def seeds(context):
@@ -38,7 +37,7 @@ def run(context):
         parts, sizes, verdicts = {name: [] for name in impact.PARTS}, [], []
         for seed in seeds(context):
             _, whole = impact.block(context, seed, {**change, "model": "dem"})
-            auto, found = impact.block(context, seed, {**change, "model": "bridging", "coupling.bridging.zone": json.dumps("auto")})
+            auto, found = impact.block(context, seed, {**change, "model": "bridging", "coupling.bridging.zone": "auto"})
             for name, key in impact.PARTS.items():
                 parts[name].append(found[key] / whole[key] - 1)
             sizes.append(volume(auto))
@@ -49,6 +48,6 @@ def run(context):
             yield context.figure(f"{name}_error_auto_{speed}", float(np.mean(values)), "", f"-{TARGET} .. {TARGET}")
             if len(values) > 1:
                 yield context.figure(f"{name}_standard_error_auto_{speed}", float(np.std(values, ddof=1) / math.sqrt(len(values))), "", "report")
-        yield context.figure(f"volume_auto_over_hand_{speed}", float(np.mean(sizes)) / (9.0 * 9.0 * 4.5), "", "<= 1")
+        yield context.figure(f"volume_auto_over_hand_{speed}", float(np.mean(sizes)) / zone_size.volume(HAND), "", "<= 1")
         yield context.figure(f"verdicts_large_enough_{speed}", float(np.mean(verdicts)), "share", "= 1")
     yield context.figure("too_small_flagged", float(np.mean(flagged)), "share", "= 1")
