@@ -177,7 +177,7 @@ TEST_CASE("places and sizes that do not fit one another") {
       {{"coupling.bridging.zone[1][2]=-1 m"}, "coupling.bridging.zone", "a lower corner below the upper one in z"},
       {{"coupling.bridging.zone=null"}, "grains.zone", "missing, expected a box with a face inside the ground"},
       {{"coupling.bridging.zone[1][2]=2.4 m"}, "coupling.bridging.zone", "make the zone smaller than the ground, or use model = dem"},
-      {{"coupling.bridging.overlap=0.5 m"}, "coupling.bridging.overlap", "'0.5 m', expected at least 2 elements, 0.8 m; make the overlap wider"},
+      {{"coupling.bridging.overlap=0.35 m"}, "coupling.bridging.overlap", "'0.35 m', expected at least 1 element, 0.4 m; make the overlap wider"},
       {{"coupling.bridging.overlap=1.7 m"}, "coupling.bridging.overlap", "leaves grains alone inside the zone, below 1.6 m along z"},
       {{"mesh.size=0.3 m"}, "mesh.size", "'0.3 m', expected at least 2.5 mean grain diameters, 0.375 m"},
       {{"mesh.size=0.9 m", "coupling.bridging.overlap=1 m"}, "mesh.size", "at most the smallest side of the ground, 0.8 m"},
@@ -281,6 +281,8 @@ TEST_CASE("warnings do not stop") {
   };
   CHECK(warned("tiny.json", {"model=edge", "coupling.edge.rows=edge_projected"}, "coupling.edge.rows"));
   CHECK(warned("tiny.json", {"coupling.rows=mortar2h"}, "coupling.rows"));
+  CHECK(warned("tiny.json", {"coupling.bridging.overlap=0.7 m"}, "coupling.bridging.overlap"));
+  CHECK_FALSE(warned("tiny.json", {"coupling.bridging.overlap=0.8 m"}, "coupling.bridging.overlap"));
   CHECK(warned("tiny.json", {"coupling.rows=strict", "coupling.solve=row_sum"}, "coupling.solve"));
   CHECK(warned("tiny.json", {"gravity=[0,0,\"-9.81 m/s2\"]", "faces.zmin=absorbing"}, "gravity"));
   CHECK(warned("tiny.json", {"stages[0].until={\"unbalanced\": 1e-3}"}, "stages[0].damping"));

@@ -55,7 +55,7 @@ def jobs(context):
     yield {"label": "all grains, half the step", "knob": "step", "measure": lambda: measure(context, "dem", {"run.step_fraction": 0.45})}
     yield {"label": "continuum", "knob": "coupling", "measure": lambda: measure(context, "continuum", {})}
     yield {"label": "continuum, mesh 0.25 m", "knob": "mesh", "measure": lambda: measure(context, "continuum", {"mesh.size": "0.25 m"})}
-    for overlap in (1.0, 1.5, 2.0):
+    for overlap in (0.5, 1.0, 1.5, 2.0):
         yield {"label": f"bridging, overlap {overlap:.1f} m", "knob": "overlap", "measure": lambda overlap=overlap: measure(context, "bridging", wide(overlap))}
     yield {"label": "bridging, mesh 0.75 m, overlap 1.5 m", "knob": "mesh", "measure": lambda: measure(context, "bridging", wide(1.5, 0.75))}
     yield {"label": "bridging, strict, overlap 1.5 m", "knob": "rows", "measure": lambda: measure(context, "bridging", wide(1.5, **{"coupling.bridging.rows": "strict"}))}

@@ -36,12 +36,17 @@ def whole(context, columns):
 
 def jobs(context):
     yield {"label": "all grains", "knob": "reference", "reference": True, "measure": lambda: whole(context, [column()])}
-    for overlap in (2, 4, 8, 12):
+    for overlap in (1, 2, 4, 8, 12):
         for scheme in (SPONGE, "mortar"):
             yield {"label": f"{scheme}, overlap {overlap} h", "knob": "overlap",
                    "measure": lambda overlap=overlap, scheme=scheme: measure(context, [column(overlap)], SCHEMES[scheme])}
     for scheme in ("mortar2h", "strict", "row_sum", "edge", "edge_hats"):
         yield {"label": f"{scheme}, overlap 8 h" if "edge" not in scheme else scheme, "knob": "rows",
                "measure": lambda scheme=scheme: measure(context, [column()], SCHEMES[scheme])}
+    for strength in (6.4, 102.4):
+        yield {"label": f"mortar, sponge of {strength}, overlap 8 h", "knob": "sponge",
+               "measure": lambda strength=strength: measure(context, [column()], {"model": "bridging", "coupling.bridging.sponge.strength": strength})}
+    yield {"label": "mortar with sponge, overlap 8 h, rates up to 4", "knob": "rates",
+           "measure": lambda: measure(context, [column()], {**SCHEMES[SPONGE], "mesh.rates": {"largest": 4}})}
     yield {"label": "mortar with sponge, floor 0.1", "knob": "weights",
            "measure": lambda: measure(context, [column()], {**SCHEMES[SPONGE], "coupling.bridging.weight_floor": 0.1})}

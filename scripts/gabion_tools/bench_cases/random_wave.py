@@ -27,7 +27,7 @@ def jobs(context):
     measure = lambda scheme, **how: lattice_wave.measure(context, columns(**how), scheme)  # noqa: E731
 
     yield {"label": "all grains", "knob": "reference", "reference": True, "measure": lambda: lattice_wave.whole(context, columns())}
-    for overlap in (1.0, 2.0, 4.0):
+    for overlap in (0.5, 1.0, 2.0, 4.0):
         yield {"label": f"mortar with sponge, overlap {overlap / 0.5:.0f} h", "knob": "overlap", "measure": lambda overlap=overlap: measure(SCHEMES[SPONGE], overlap=overlap)}
     for element in (0.25, 1.0):
         yield {"label": f"mortar with sponge, h = {element / 0.1:.1f} d, overlap 4 m", "knob": "mesh", "measure": lambda element=element: measure(SCHEMES[SPONGE], element=element)}

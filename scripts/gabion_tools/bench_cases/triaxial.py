@@ -48,9 +48,13 @@ def measure(context, name, choice):
 def jobs(context):
     yield {"label": "all grains", "knob": "reference", "reference": True, "measure": lambda: measure(context, "dem", {})}
     yield {"label": "continuum", "knob": "coupling", "measure": lambda: measure(context, "continuum", {}), "note": "0 by construction: its constants are those of the reference"}
-    for overlap in (1.0, 1.5, 2.0):
+    for overlap in (0.5, 1.0, 1.5, 2.0):
         yield {"label": f"bridging, overlap {overlap:.1f} m", "knob": "overlap", "measure": lambda overlap=overlap: measure(context, "bridging", wide(overlap))}
     yield {"label": "bridging, mesh 0.75 m, overlap 1.5 m", "knob": "mesh", "measure": lambda: measure(context, "bridging", wide(1.5, 0.75))}
+    yield {"label": "bridging, overlap 1.5 m, half the step", "knob": "step",
+           "measure": lambda: measure(context, "bridging", wide(1.5, **{"run.step_fraction": 0.45}))}
+    yield {"label": "bridging, overlap 1.5 m, weights' floor 0.1", "knob": "weights",
+           "measure": lambda: measure(context, "bridging", wide(1.5, **{"coupling.bridging.weight_floor": 0.1}))}
     yield {"label": "strict, overlap 1.5 m", "knob": "rows", "measure": lambda: measure(context, "strict", wide(1.5))}
     yield {"label": "bridging, middle of the overlap at 0.75 m", "knob": "zone", "measure": lambda: measure(context, "bridging", wide(1.0, border=0.75))}
     yield {"label": "edge, border at 0.5 m", "knob": "zone", "measure": lambda: measure(context, "edge", edge(0.5))}
