@@ -21,7 +21,7 @@ void ContinuumEngine::set_mesh(Mesh mesh) {
   motion.position = mesh_.nodes;
   boundary = engine::Boundary{};
   tie.clear();
-  past_step_ = step_change_ = 0.0;
+  past_step_ = step_change_ = rate_swing_ = 0.0;
   rates_ = one_rate(mesh_.nodes.size());
   prepared_ = false;
 }
@@ -148,12 +148,13 @@ Ledger ContinuumEngine::ledger() const {
   ledger.add("kinetic", Ledger::Kind::stored, kinetic_);
   ledger.add("elastic", Ledger::Kind::stored, elastic_);
   ledger.add("gravity", Ledger::Kind::stored, gravity_);
-  ledger.add("damping", Ledger::Kind::lost, -motion.damping_work.until_now());
+    ledger.add("damping", Ledger::Kind::lost, -motion.damping_work.until_now());
   ledger.add("dashpots", Ledger::Kind::lost, -motion.dashpot_work.until_now());
   ledger.add("step_change", Ledger::Kind::lost, step_change_);
   ledger.add("loads", Ledger::Kind::work, boundary.load_work.until_now());
   ledger.add("constraints", Ledger::Kind::work, boundary.constraint_work.until_now());
   ledger.add("multipliers", Ledger::Kind::work, tie.work.until_now());
+  ledger.add("rate_swing", Ledger::Kind::aside, rate_swing_);
   return ledger;
 }
 

@@ -71,6 +71,7 @@ class ContinuumEngine : public engine::Engine {
   void adapt(const engine::StepContext& context);
   void book_step_change(double dt);
   void measure_stored_energy();
+  void measure_rate_swing(double dt);
 
   Corners corners_now(std::size_t element) const;
   std::vector<double> centre_strains() const;
@@ -92,6 +93,8 @@ class ContinuumEngine : public engine::Engine {
 
   // at t_n of the last measured step, J
   double kinetic_ = 0.0, elastic_ = 0.0, gravity_ = 0.0;
+  double rate_swing_ = 0.0;   ///< see measure_rate_swing
+  VecField mean_velocity_;    ///< its working space, empty at one rate
   double past_step_ = 0.0;    ///< of the last drift, s; 0: none since the velocities were set
   double step_change_ = 0.0;  ///< lost where the step changed, J; see book_step_change
 };

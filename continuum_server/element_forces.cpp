@@ -197,6 +197,19 @@ double ElementForces::energy(const VecField& displacement) const {
   return total;
 }
 
+double ElementForces::excess_energy(const VecField& displacement) const {
+  double total = 0.0;
+  const auto weigh = [&](std::uint8_t tier, auto&& energy_of) {
+    const auto rate = static_cast<double>(rates_.rate[tier]);
+    if (tier > 0 || rate > 1.0) total += (rate * rate - 1.0) * energy_of();
+  };
+  for (std::size_t b = 0; b < bricks_.batch.size(); ++b)
+    weigh(bricks_.tier[b], [&] { return brick_energy(bricks_.batch[b], materials_[bricks_.batch[b].material], displacement.data()); });
+  for (std::size_t b = 0; b < distorted_.batch.size(); ++b)
+    weigh(distorted_.tier[b], [&] { return distorted_energy(distorted_.batch[b], displacement.data()); });
+  return total;
+}
+
 template <class Batch>
 double ElementForces::corner_force_sum(const Batches<Batch>& batches, const VecField& displacement) const {
   double total = 0.0;

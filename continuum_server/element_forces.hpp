@@ -40,6 +40,8 @@ class ElementForces {
   const Rates& rates() const { return rates_; }
 
   double energy(const VecField& displacement) const;
+  /// Sum of (r_e^2 - 1) times the energies of the elements.
+  double excess_energy(const VecField& displacement) const;
   /// Mean of |nodal force| over the corners of all elements, N.
   double mean_corner_force(const VecField& displacement) const;
   /// As the step sees it, with the share; N/m.

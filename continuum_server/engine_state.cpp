@@ -22,7 +22,7 @@ std::vector<double> components(const VecField& field) {
   return values;
 }
 
-constexpr std::uint64_t blob_kind = 0x32304d554e49544eull;  // "NTINUM02"
+constexpr std::uint64_t blob_kind = 0x33304d554e49544eull;  // "NTINUM03"
 
 /// Appends to, or reads from, a blob; one list of members serves both.
 class Writer {
@@ -167,6 +167,7 @@ std::vector<std::uint8_t> ContinuumEngine::checkpoint() const {
   write(kinetic_);
   write(elastic_);
   write(gravity_);
+  write(rate_swing_);
   write(past_step_);
   write(step_change_);
   return std::move(write.blob);
@@ -193,6 +194,7 @@ void ContinuumEngine::restore(std::span<const std::uint8_t> blob) {
   read(kinetic_);
   read(elastic_);
   read(gravity_);
+  read(rate_swing_);
   read(past_step_);
   read(step_change_);
   if (!read.at_end())

@@ -8,6 +8,7 @@ namespace gabion::coupler {
 
 namespace {
 
+constexpr const char* swing_name = "rate_swing";
 const std::set<std::string> works{"loads", "constraints", "multipliers", "walls"};
 const std::set<std::string> stores{"kinetic", "rotational", "elastic", "gravity"};
 
@@ -15,7 +16,7 @@ const std::set<std::string> stores{"kinetic", "rotational", "elastic", "gravity"
 
 std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& dem,
                                        const std::optional<protocol::RunDone>& continuum) {
-  double balance = 0.0, moved = 0.0, lost = 0.0;
+  double balance = 0.0, moved = 0.0, lost = 0.0, swing = 0.0;
   double tie_work[2] = {0.0, 0.0};
   std::vector<double> row;
   columns_.clear();
@@ -27,6 +28,10 @@ std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& d
         const double value = (*report)->ledger[i];
         columns_.push_back((side == 0 ? "grains " : "continuum ") + name + " [J]");
         row.push_back(value);
+        if (name == swing_name) {
+          swing += value;
+          continue;
+        }
         const bool work = works.contains(name);
         balance += work ? -value : value;
         if (name == "multipliers") tie_work[side] = value;
@@ -36,7 +41,10 @@ std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& d
       }
     ++side;
   }
-  if (!started_) first_ = balance;
+  if (!started_) {
+    first_ = balance;
+    first_swing_ = swing;
+  }
   if (started_ && new_body_) first_ += balance - previous_;
   started_ = true;
   new_body_ = false;
@@ -46,6 +54,9 @@ std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& d
   drift_ = std::isfinite(balance) ? std::max(drift_, std::fabs(balance - first_)) : INFINITY;
   low_ = std::min(low_, balance - first_);
   high_ = std::max(high_, balance - first_);
+  const double with_swing = balance - first_ + swing - first_swing_;
+  low_with_swing_ = std::min(low_with_swing_, with_swing);
+  high_with_swing_ = std::max(high_with_swing_, with_swing);
   error_ = scale_ > 0.0 ? drift_ / scale_ : 0.0;
   const double larger = std::max(std::fabs(tie_work[0]), std::fabs(tie_work[1]));
   if (larger > 0.0) residual_ = std::fabs(tie_work[0] + tie_work[1]) / larger;
@@ -57,7 +68,8 @@ std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& d
 
 nlohmann::json EnergyBalance::state() const {
   return {{"first", first_}, {"error", error_}, {"residual", residual_}, {"scale", scale_}, {"lost", lost_}, {"drift", drift_},
-          {"previous", previous_}, {"started", started_}, {"new_body", new_body_}, {"low", low_}, {"high", high_}};
+          {"previous", previous_}, {"started", started_}, {"new_body", new_body_}, {"low", low_}, {"high", high_},
+          {"first_swing", first_swing_}, {"low_with_swing", low_with_swing_}, {"high_with_swing", high_with_swing_}};
 }
 
 void EnergyBalance::restore(const nlohmann::json& state) {
@@ -72,6 +84,9 @@ void EnergyBalance::restore(const nlohmann::json& state) {
   new_body_ = state.at("new_body");
   low_ = state.at("low");
   high_ = state.at("high");
+  first_swing_ = state.at("first_swing");
+  low_with_swing_ = state.at("low_with_swing");
+  high_with_swing_ = state.at("high_with_swing");
 }
 
 }  // namespace gabion::coupler

@@ -12,7 +12,7 @@ namespace gabion::coupler {
 
 /// balance = stored + lost - work; it must stay what it was at the first measurement. Entries that an engine's
 /// ledger names loads, constraints and multipliers are work done on it; kinetic, rotational, elastic and gravity
-/// are stored; all others are lost.
+/// are stored; rate_swing stands aside; all others are lost.
 class EnergyBalance {
  public:
   /// Columns of energy.csv after the time, once the first reports are in.
@@ -28,6 +28,8 @@ class EnergyBalance {
   double error() const { return error_; }                 ///< largest |balance - first| over the largest energy moved
   /// Largest less smallest balance over the largest energy moved.
   double excursion() const { return scale_ > 0.0 ? (high_ - low_) / scale_ : 0.0; }
+  /// The same of balance + rate_swing, what waves in elements of several rates hold beyond kinetic + elastic.
+  double excursion_with_swing() const { return scale_ > 0.0 ? (high_with_swing_ - low_with_swing_) / scale_ : 0.0; }
   double multiplier_residual() const { return residual_; } ///< |work on grains + work on continuum| over the larger one
   double largest_energy() const { return scale_; }        ///< J
   double dissipated() const { return lost_; }             ///< J
@@ -43,6 +45,7 @@ class EnergyBalance {
   double first_ = 0.0, error_ = 0.0, residual_ = 0.0, scale_ = 0.0, lost_ = 0.0, drift_ = 0.0;
   double previous_ = 0.0;
   double low_ = 0.0, high_ = 0.0;  ///< balance less first
+  double first_swing_ = 0.0, low_with_swing_ = 0.0, high_with_swing_ = 0.0;
   bool started_ = false, new_body_ = false;
 };
 

@@ -428,6 +428,7 @@ nlohmann::json Simulation::summary() const {
   if (!rates_used_.is_null()) {
     s["rates"] = rates_used_;
     s["rates"]["energy_excursion"] = energy.excursion();
+    s["rates"]["energy_excursion_with_swing"] = energy.excursion_with_swing();
   }
   for (const auto* report : {&last_.dem, &last_.continuum})
     if (*report) s["momentum"][report == &last_.dem ? "dem" : "continuum"] = (*report)->momentum.data;

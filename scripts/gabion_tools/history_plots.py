@@ -43,7 +43,7 @@ def energy(run):
     for column, values in table.items():
         name = split_unit(column)[0]
         entry = re.split(r"[ .]", name)[-1].replace("_", " ")  # 'grains broken_bonds': both media in one
-        if column == time_column(table) or "balance" in name:
+        if column == time_column(table) or "balance" in name or entry == "rate swing":
             continue
         # An engine's own multipliers' work is not an energy of the whole: the two cancel.
         into = works if entry in ("loads", "constraints", "multipliers", "external") else stored

@@ -169,7 +169,8 @@ class ContinuumServer(SessionCases, RunCases, EngineTest):
         self.assertAlmostEqual(client.ask("STABLE_STEP")["stable_step"] / ready["stable_step"], 0.25, 3)
         four = client.run(40, dt, measure=4)  # a brick that is evaluated in every fourth step: the steps are four times as long
         self.assertEqual(four["state_hash"], one["state_hash"])
-        self.assertEqual(list(four["ledger"].values), list(one["ledger"].values))
+        summed = lambda done: [e for e, kind in zip(done["ledger"].values, done["ledger_kinds"].values) if kind != 3]  # noqa: E731
+        self.assertEqual(summed(four), summed(one))
         for fields in (dict(steps=6), dict(steps=8, first_step=2), dict(steps=8, damping=0.1), dict(steps=8, measure=1)):
             error = self.refusal(client.ask, "RUN", **{"dt": dt, **fields})
             self.assertEqual((error.code, error.where), ("value", f"RUN.{list(fields)[-1]}"))

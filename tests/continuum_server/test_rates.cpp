@@ -187,6 +187,64 @@ TEST_CASE("the energy at several rates swings within bounds, up to the limit of 
   }
 }
 
+namespace {
+
+double entry(const engine::Ledger& ledger, const std::string& name) {
+  for (const auto& e : ledger.entries)
+    if (e.name == name) return e.energy;
+  FAIL("no entry " << name);
+  return 0.0;
+}
+
+}  // namespace
+
+TEST_CASE("rate_swing is what kinetic + elastic leave out of a motion in elements of rate r") {
+  constexpr int length = 24, rate = 4;
+  const SolidMaterial strings = isotropic(1e6, 0.0, 1000.0);  // no lateral motion: a bar of springs and masses
+  Solid solid(box_mesh({length, 2, 2}, vec(length, 2, 2)), strings);
+  solid.engine.prepare();
+  const double dt = 0.4 * solid.engine.stable_step() / rate;
+  solid.engine.set_rates(Bytes(solid.engine.mesh().elements.size(), rate));
+  const double wave_number = 4 * M_PI / length;
+  const double omega = 2.0 * std::sqrt(1e6 / 1000.0) * std::sin(0.5 * wave_number);
+  const double x = omega * rate * dt;
+  for (std::size_t n = 0; n < solid.engine.motion.size(); ++n)
+    solid.engine.motion.velocity[n] = vec(1e-3 * std::cos(wave_number * solid.engine.motion.position[n][0]), 0, 0);
+  for (int part = 0; part < 10; ++part) {
+    const engine::Ledger ledger = run_at_rates(solid, 3 * rate, dt, part * 3 * rate);
+    CHECK(entry(ledger, "rate_swing") / ledger.balance() == Approx((1.0 - 1.0 / (rate * rate)) * x * x / 6.0).epsilon(0.3 * x * x));
+  }
+  solid.engine.set_rates(Bytes(solid.engine.mesh().elements.size(), 1));
+  solid.run(1, dt);
+  CHECK(entry(solid.engine.ledger(), "rate_swing") == 0.0);
+}
+
+TEST_CASE("a packet that goes over from rate 1 to rate 8 keeps balance and swing together") {
+  const int length = 180;
+  const Bar bar(length, 1, 90, 6, 8);
+  Solid solid(bar.mesh, isotropic(1e6, 0.0, 1000.0));
+  solid.engine.prepare();
+  solid.engine.set_rates(bar.rate);
+  const double dt = 0.9 * solid.engine.stable_step(), speed = std::sqrt(1e3), wave_number = 2 * M_PI / 12.0;
+  const auto packet = [&](double at) {
+    const double s = (at - 45.0) / 11.0;
+    return 1e-6 * std::exp(-0.5 * s * s) * std::sin(wave_number * (at - 45.0));
+  };
+  auto& motion = solid.engine.motion;
+  for (std::size_t n = 0; n < motion.size(); ++n) {
+    const double at = motion.position[n][0], half = 0.5 * speed * dt;
+    motion.displacement[n] = vec(packet(at), 0, 0);
+    motion.velocity[n] = vec((packet(at + half + 1e-3) - packet(at + half - 1e-3)) / -2e-3 * speed, 0, 0);
+  }
+  const int part = 8 * static_cast<int>(std::ceil(90.0 / speed / dt / 8));
+  const engine::Ledger before = run_at_rates(solid, 8, dt), after = run_at_rates(solid, part, dt, 8);
+  const double energy = before.balance(), seen = after.balance() - energy;
+  const double x = 2.0 * std::sqrt(1e3) * std::sin(0.5 * wave_number) * 8 * dt;
+  CHECK(seen == Approx(-energy * x * x / 6.0).epsilon(0.25));  // a packet has longer and shorter waves
+  CHECK(entry(before, "rate_swing") < 1e-3 * energy);
+  CHECK(std::fabs(seen + entry(after, "rate_swing") - entry(before, "rate_swing")) < 0.1 * std::fabs(seen));
+}
+
 TEST_CASE("beyond the limit of the coarsest elements the energy grows") {
   const Bar bar(32, 3, 2, 4, 8);
   Solid solid(bar.mesh, soil);
@@ -242,7 +300,7 @@ TEST_CASE("the ledger at several rates holds loads, dashpots, gravity and a driv
   CHECK(error[0] < 0.001);
   CHECK(error[1] < 0.1 * error[0]);
   for (const auto& e : solid.engine.ledger().entries)
-    if (e.name != "multipliers" && e.name != "damping" && e.name != "step_change") CHECK(e.energy != 0.0);
+    if (e.name != "multipliers" && e.name != "damping" && e.name != "step_change" && e.name != "rate_swing") CHECK(e.energy != 0.0);
   // at rest the base carries the weight and the load, whichever rate its nodes have
   Solid still(bar.mesh, soil);
   still.engine.options.gravity = vec(0, 0, -9.81);
