@@ -5,7 +5,7 @@ import html
 import math
 
 from gabion_tools import report_page
-from gabion_tools.bench_points import COSTS, HEADLINES, front, speedup
+from gabion_tools.bench_points import COSTS, COUPLED, HEADLINES, front, speedup
 from gabion_tools.style import MODEL_COLOURS, plt
 
 AXES = {"counts": "grain-steps + element cost x element-steps", "wall": "time of stepping [s]"}
@@ -70,17 +70,18 @@ HEAD = ("point", "changed", "errors", "worst [%]", "grains", "elements", "steps"
 
 
 def headlines(points, reference):
-    """[(limit, which cost, factor, point)]"""
+    """[(limit, model, which cost, factor, point)]"""
     good = [p for p in points if not p.failed]
-    return [(limit, which, *speedup(good, reference, limit, cost)) for limit in HEADLINES for which, cost in COSTS.items()]
+    return [(limit, model, which, *speedup(good, reference, limit, cost, (model,)))
+            for limit in HEADLINES for model in COUPLED for which, cost in COSTS.items()]
 
 
-def sentence(limit, which, factor, point):
+def sentence(limit, model, which, factor, point):
     unit = "counts" if which == "counts" else "wall time"
     if factor is None:
-        return f"no coupled point is within {100 * limit:.0f} %"
+        return f"{model} at {100 * limit:.0f} %: no point within ({unit})"
     doubt = "" if not math.isfinite(point.uncertainty) else f" +- {100 * point.uncertainty:.2f}"
-    return f"{factor:.2f} times all grains in {unit} at {100 * limit:.0f} %: {point.label} (error {100 * point.error:.2f}{doubt} %)"
+    return f"{model} at {100 * limit:.0f} %: {factor:.2f} times all grains in {unit}, {point.label} (error {100 * point.error:.2f}{doubt} %)"
 
 
 def write_table(path, points, reference):

@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass, field
 
 HEADLINES = (0.01, 0.03)
+COUPLED = ("bridging", "edge")
 COSTS = {"counts": lambda p: p.counts, "wall": lambda p: p.wall}
 
 
@@ -79,9 +80,9 @@ def front(points, cost):
     return chosen
 
 
-def speedup(points, reference, limit, cost):
-    """(factor, point) of the cheapest coupled point whose error is at most limit; (None, None) where none is."""
-    able = [p for p in points if p.error <= limit and p.model in ("bridging", "edge")]
+def speedup(points, reference, limit, cost, models=COUPLED):
+    """(factor, point) of the cheapest point of these models whose error is at most limit; (None, None) where none is."""
+    able = [p for p in points if p.error <= limit and p.model in models]
     if not able or reference is None:
         return None, None
     best = min(able, key=cost)

@@ -20,7 +20,8 @@ from gabion_tools.places import PYTHON, REPOSITORY, executable
 COARSE_GRAINS = 30000      # of the quick run, at most about
 ELEMENT_COST = 0.27        # of one element's step over one grain's, `gabion verify kernels`
 YIELD_SHARE = 1.0 / 3.0    # of the target: share of yielding contacts that the mesh may miss
-FINE_TARGET = 0.02         # below it the overlap is twice as wide
+# least target error: elements and diameters of the overlap, elements a wave
+RULES = ((0.05, (1, 2.5, 6)), (0.02, (2, 5, 6)), (0.0, (4, 10, 10)))
 LEAST_ELEMENT = 2.5        # diameters
 AXES = "xyz"
 
@@ -131,8 +132,7 @@ class Sizing:
 
     def rules(self):
         """Elements and diameters of the overlap, elements a wave."""
-        fine = self.target < FINE_TARGET
-        return (4, 10, 10) if fine else (2, 5, 6)
+        return next(rule for least, rule in RULES if self.target >= least)
 
     def zone(self, hole, element):
         elements, diameters, _ = self.rules()

@@ -105,6 +105,7 @@ class Points(unittest.TestCase):
         factor, chosen = bench_points.speedup([whole, *points], whole, 0.03, cost)
         self.assertEqual((factor, chosen.label), (50.0, "middle"))
         self.assertEqual(bench_points.speedup([whole], whole, 0.03, cost), (None, None))
+        self.assertEqual(bench_points.speedup(points, whole, 0.03, cost, ("edge",)), (None, None))
 
     def test_one_packing_has_no_standard_error(self):
         self.assertTrue(math.isnan(point("one", 0.1, 1).uncertainty))
