@@ -73,6 +73,7 @@ bool ContinuumEngine::step(const StepContext& context, Exchange& exchange) {
   const bool tied = tie.mode() != engine::Tie::Mode::none;
   const std::size_t reach = tie.reach(), nodes = motion.size();
   adapt(context);
+  time_ = context.time;
   if (rates_.several()) return step_at_rates(context, exchange);
 
   forces_.start(body_, motion.force);

@@ -72,6 +72,12 @@ class ContinuumEngine : public engine::Engine {
   void book_step_change(double dt);
   void measure_stored_energy();
   void measure_rate_swing(double dt);
+  void book_step_change_at_rates(const engine::StepContext& context);
+  struct NextImpulse {
+    VecField of_all, of_loads;
+  };
+  NextImpulse next_impulse() const;
+  void bring_velocities(const NextImpulse& before);
 
   Corners corners_now(std::size_t element) const;
   std::vector<double> centre_strains() const;
@@ -89,7 +95,7 @@ class ContinuumEngine : public engine::Engine {
   double step_size_ = 0.0;
   std::size_t reach_ = 0;
   int arranged_threads_ = 1;
-  double time_ = 0.0;  ///< t_n of the last step at several rates, s
+  double time_ = 0.0;  ///< t_n of the last step, s
 
   // at t_n of the last measured step, J
   double kinetic_ = 0.0, elastic_ = 0.0, gravity_ = 0.0;

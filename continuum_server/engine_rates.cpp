@@ -15,6 +15,8 @@ void ContinuumEngine::set_rates(std::span<const std::uint8_t> rate) {
   if (!prepared_) throw RequestError("RATES", "the engine is not prepared", "send PREPARE first");
   Rates rates = make_rates(mesh_, rate);
   check_margin(rates, mesh_, tie.reach());
+  const bool moving = past_step_ > 0.0;
+  const NextImpulse before = moving ? next_impulse() : NextImpulse{};
   rates_ = std::move(rates);
   motion.tiers.clear();
   if (rates_.several())
@@ -26,6 +28,40 @@ void ContinuumEngine::set_rates(std::span<const std::uint8_t> rate) {
   reach_ = tie.reach();
   forces_.arrange(reach_, arranged_threads_);
   step_size_ = 0.0;
+  if (moving) bring_velocities(before);
+}
+
+/// What each node will be given in the next step at the present rates, dashpots apart, N s. Every node takes part in it.
+ContinuumEngine::NextImpulse ContinuumEngine::next_impulse() const {
+  NextImpulse next{VecField(motion.size(), Vec{}), VecField(motion.size(), Vec{})};
+  boundary.add_loads(next.of_loads, time_, 0, motion.size());
+  forces_.start(body_, next.of_all);
+  forces_.subtract(Part::interface, motion.displacement, next.of_all, rates_.tiers());
+  forces_.subtract(Part::interior, motion.displacement, next.of_all, rates_.tiers());
+  for (std::size_t t = 0; t < rates_.tiers(); ++t) {
+    const Vec own = engine::splat(static_cast<double>(rates_.rate[t]) * past_step_);
+    for (std::int32_t n = rates_.nodes[t].first; n < rates_.nodes[t].last; ++n) {
+      next.of_loads[n] *= own;
+      next.of_all[n] = motion.freedom[n] * (own * next.of_all[n] + next.of_loads[n]);
+    }
+  }
+  return next;
+}
+
+/// Velocities stand half an own step back, v = v_n - J/(2 m) with the impulse J of the next step; at other rates J is another
+/// one. What the energy jumps by, since a motion counts for less at a larger rate, is booked with the changes of step.
+void ContinuumEngine::bring_velocities(const NextImpulse& before) {
+  const NextImpulse after = next_impulse();
+  double jump = 0.0;
+  for (std::size_t n = 0; n < motion.size(); ++n) {
+    const Vec was = motion.velocity[n], per_mass = engine::splat(1.0 / motion.mass[n]);
+    const Vec now = was + engine::splat(0.5) * per_mass * (before.of_all[n] - after.of_all[n]);
+    motion.velocity[n] = now;
+    jump += 0.5 * motion.mass[n] * (engine::dot(now, now + per_mass * after.of_all[n]) - engine::dot(was, was + per_mass * before.of_all[n]));
+    jump -= 0.5 * (engine::dot(after.of_loads[n], now) - engine::dot(before.of_loads[n], was));
+  }
+  if (motion.measured) step_change_ -= jump;
+  for (engine::Work* work : {&motion.damping_work, &motion.dashpot_work, &boundary.load_work, &boundary.constraint_work}) work->merge_tiers();
 }
 
 /// Tied nodes are of the first tier and no coarser element touches the interface's (check_margin), so that what is sent
@@ -33,8 +69,6 @@ void ContinuumEngine::set_rates(std::span<const std::uint8_t> rate) {
 bool ContinuumEngine::step_at_rates(const StepContext& context, Exchange& exchange) {
   const bool tied = tie.mode() != engine::Tie::Mode::none;
   const std::size_t reach = tie.reach(), active = rates_.active(context.step);
-  time_ = context.time;
-  past_step_ = 0.0;  // a change of the step is booked between steps at one rate only
 
   forces_.start({}, motion.force, active);
   forces_.subtract(Part::interface, motion.displacement, motion.force, active);
@@ -57,6 +91,7 @@ bool ContinuumEngine::step_at_rates(const StepContext& context, Exchange& exchan
   if (tied) tie.correct(motion, context);
   for (std::size_t t = 0; t < active; ++t)
     boundary.book(motion, motion.tiers[t].own(context), motion.tiers[t].first, motion.tiers[t].last, t);
+  book_step_change_at_rates(context);
   if (context.measure) {
     measure_stored_energy();
     measure_rate_swing(context.dt);
@@ -65,6 +100,20 @@ bool ContinuumEngine::step_at_rates(const StepContext& context, Exchange& exchan
     motion.drift(motion.tiers[t].own(context), motion.tiers[t].first, motion.tiers[t].last, t);
   if (context.measure || !motion.finite) check_health();
   return more;
+}
+
+/// As book_step_change, each node with its own step.
+void ContinuumEngine::book_step_change_at_rates(const StepContext& context) {
+  if (motion.measured && past_step_ != 0.0 && past_step_ != context.dt) {
+    VecField load(motion.size(), Vec{});
+    boundary.add_loads(load, context.time, 0, motion.size());
+    double power = 0.0;
+    for (const Tier& tier : motion.tiers)
+      for (std::size_t n = tier.first; n < tier.last; ++n)
+        power += static_cast<double>(tier.rate) * engine::dot(motion.force[n] - load[n], motion.old_velocity[n]);
+    step_change_ -= 0.5 * (context.dt - past_step_) * power;
+  }
+  past_step_ = context.dt;
 }
 
 /// kinetic + elastic is what a leapfrog keeps exactly, but a motion of frequency omega stands in it with sin(x)/x of its

@@ -218,12 +218,12 @@ void Simulation::begin_stage(std::size_t index) {
   const scene::Stage& stage = scene_.stages[index];
   const bool first = index == 0;
   activity_.is("beginning a stage");
+  rates_->cut(1);
   apply_faces(index, stepper_->time());
   if (scene_.block && scene_.block->stage == static_cast<int>(index)) release_block();
 
   if (stage.zero_displacements) recorder_->zero_displacements(dem_, continuum_);
 
-  rates_->cut(1);
   double dt = choose_step(stage);
   if (first) {
     rates_->plan(scene_.run.step ? dt : dt * std::sqrt(1.0 + stage.damping));
@@ -282,7 +282,7 @@ void Simulation::run_stage(const scene::Stage& stage) {
                    unbalanced, recorder_->energy().error());
     if (block_) recorder_->block_row(stepper_->time(), *block_, dem_->fetch("block"), dem_->fetch("block_forces"), chunk);
     watch(stage, last_);
-    look_at_zone(stage, chunk);
+    look_at_zone(stage, chunk, taken >= most || rested());
     if (scene_.output.every > 0.0 && stepper_->time() >= next_output_ - 0.5 * dt_) {
       recorder_->state(stage.name, stepper_->step(), stepper_->time(), dt_, dem_, continuum_, tie_ ? &*tie_ : nullptr);
       next_output_ += scene_.output.every;
@@ -380,11 +380,11 @@ void Simulation::watch(const scene::Stage& stage, const Advance& advance) {
                     number(scene_.coupling.rotation_limit) + "; linear elements take it for a strain of " + number(0.5 * rotation * rotation) + ". Enlarge grains.zone so that the interface lies in ground that does not turn");
 }
 
-/// Only while nothing damps the motion: a stage that comes to rest is not what the zone is for.
-void Simulation::look_at_zone(const scene::Stage& stage, std::uint64_t steps) {
+/// Only while nothing damps the motion: a stage that comes to rest is not what the zone is for. Always at a stage's end.
+void Simulation::look_at_zone(const scene::Stage& stage, std::uint64_t steps, bool last) {
   if (!zone_watch_ || stage.damping > 0.0) return;
   steps_to_look_ -= std::min(steps, steps_to_look_);
-  if (steps_to_look_ > 0) return;
+  if (steps_to_look_ > 0 && !last) return;
   steps_to_look_ = steps_between_looks;
   zone_watch_->look(dem_->fetch("yield"), zone_watch_->needs_velocity() ? dem_->fetch("velocity") : std::vector<double>{});
 }

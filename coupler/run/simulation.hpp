@@ -68,7 +68,7 @@ class Simulation {
   /// Brings everything to where the checkpoint was taken; returns the index of its stage.
   std::size_t restore_checkpoint();
   void watch(const scene::Stage& stage, const Advance& advance);
-  void look_at_zone(const scene::Stage& stage, std::uint64_t steps);
+  void look_at_zone(const scene::Stage& stage, std::uint64_t steps, bool last);
   static double tied_damage(const protocol::RunDone& report);
   nlohmann::json summary() const;
 

@@ -152,12 +152,13 @@ std::vector<std::string> ZoneWatch::advice(double energy, double tied_damage) co
                                       "ground that stays elastic"));
   if (found.is_null()) return words;
   if (!found["large_enough"]) {
-    std::string move = "the zone of the grains is too small: in the overlap up to " + per_cent(found["damaged_share"]) +
-                       " of the contacts slid or broke, with the mesh's weight " + per_cent(found["missed_share"]) + ", more than " +
+    const std::string place = zone_.overlap() > 0.0 ? "in the overlap" : "within two diameters of the border";
+    std::string move = "the zone of the grains is too small: " + place + " up to " + per_cent(found["damaged_share"]) +
+                       " of the contacts slid or broke, which makes " + per_cent(found["missed_share"]) + " of what the mesh carries, more than " +
                        per_cent(tolerable_damage) + ". Move its";
     for (const auto& [face, by] : found["too_small_by"].items()) {
       const bool through = by.get<double>() > (static_cast<double>(shells_a_face_) - 0.5) * width_;
-      move += " " + face + " face out by " + (through ? "more than " : "") + text_of(by) + " m,";
+      move += " " + face + " face out by " + (through ? "more than " : "about ") + text_of(by) + " m,";
     }
     move.back() = '.';
     words.push_back(move);

@@ -69,11 +69,9 @@ void set_radius(Grains& grains, const Json& radius) {
     return;
   }
   grains.radius_kind = "sieve";
-  double sum = 0.0;
-  for (const Json& grade : radius["sieve"]) sum += grade[1].get<double>();
-  for (const Json& grade : radius["sieve"]) {
-    grains.radius.push_back(grade[0]);
-    grains.radius.push_back(grade[1].get<double>() / sum);
+  for (const Json& sieve : radius["sieve"]) {
+    grains.radius.push_back(sieve[0]);
+    grains.radius.push_back(sieve[1]);
   }
 }
 

@@ -79,6 +79,13 @@ void check_radius(Checker& check) {
   }
   if (grains.radius_kind == "uniform" && r.front() > r.back())
     check.error("grains.radius.uniform", "the smaller radius first", "swap the two values");
+  if (grains.radius_kind == "sieve") {
+    bool rising = r.size() >= 4 && r[1] == 0.0 && r.back() == 1.0;
+    for (std::size_t i = 0; i + 3 < r.size(); i += 2) rising = rising && r[i] < r[i + 2] && r[i + 1] <= r[i + 3];
+    if (!rising)
+      return check.error("grains.radius.sieve", "at least two sieves, radii rising, shares passing from 0 to 1",
+                         "write the grain-size curve, as in [[\"5 cm\", 0], [\"8 cm\", 0.6], [\"10 cm\", 1]]");
+  }
   double largest = 0.0;
   const std::size_t stride = grains.radius_kind == "sieve" ? 2 : 1;
   for (std::size_t i = 0; i < r.size(); i += stride) largest = std::max(largest, r[i]);
@@ -115,7 +122,11 @@ void check_lattice(Checker& check) {
 /// Returns false when the zone makes no sense, so that nothing more is said about it.
 bool check_zone(Checker& check) {
   const Scene& scene = check.scene;
-  if (check.coupled() && scene.grains.zone_to_choose) return false;  // nothing to look at yet
+  if (check.coupled() && scene.grains.zone_to_choose) {
+    if (std::none_of(scene.stages.begin(), scene.stages.end(), [](const Stage& stage) { return stage.damping == 0.0; }))
+      check.error(check.zone_path(), "a box: auto needs a stage without damping, in which the load acts", "give the zone's two corners");
+    return false;  // nothing to look at yet
+  }
   const std::string path = check.zone_path();
   if (scene.grains.zone) {
     if (!ordered(check, *scene.grains.zone, path)) return false;

@@ -74,12 +74,12 @@ double mean_diameter(const Grains& grains) {
   const auto& r = grains.radius;
   if (r.empty()) return 0.0;
   if (grains.radius_kind == "uniform") return r.front() + r.back();
-  // numbers of grains per unit of mass go with share / radius^3
+  // between two sieves the mass is uniform in the radius: numbers go with r^-3 dr
   double count = 0.0, length = 0.0;
-  for (std::size_t i = 0; i + 1 < r.size(); i += 2) {
-    const double number = r[i + 1] / (r[i] * r[i] * r[i]);
-    count += number;
-    length += number * 2 * r[i];
+  for (std::size_t i = 0; i + 3 < r.size(); i += 2) {
+    const double a = r[i], b = r[i + 2], density = (r[i + 3] - r[i + 1]) / (b - a);
+    count += 0.5 * density * (1 / (a * a) - 1 / (b * b));
+    length += 2 * density * (1 / a - 1 / b);
   }
   return length / count;
 }

@@ -67,8 +67,8 @@ struct Grains {
   std::string file;                     ///< of the packing; empty: none
   double bond_gap = 0.0;                ///< packing from a file: largest gap of a bond over the sum of the radii
   std::string radius_kind = "uniform";  ///< uniform, sieve
-  /// m; uniform: smallest and largest; lattice: one value; sieve: radius, share, radius, share ... (shares of the
-  /// mass, summing to 1)
+  /// m; uniform: smallest and largest; lattice: one value; sieve: radius, share, radius, share ... (share of
+  /// the mass passing, 0 to 1)
   std::vector<double> radius;
   double solid_fraction = 0.63;
   double contacts_per_grain = 5.7;

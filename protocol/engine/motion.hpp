@@ -52,6 +52,13 @@ class Work {
     pending_[tier] = second_half;
   }
   double until_now() const { return done_; }  ///< J, up to t_n of the last step added
+  /// Before the points change their tiers: what is pending is added with the next of tier 0.
+  void merge_tiers() {
+    for (std::size_t tier = 1; tier < most_tiers; ++tier) {
+      pending_[0] += pending_[tier];
+      pending_[tier] = 0.0;
+    }
+  }
 
  private:
   double done_ = 0.0;

@@ -10,7 +10,7 @@ import traceback
 from pathlib import Path
 
 from gabion_tools import build, packages
-from gabion_tools.errors import Failure, UserError
+from gabion_tools.errors import Failure, UserError, advice
 from gabion_tools.places import BUILD, PYTHON, executable, short
 
 
@@ -38,7 +38,7 @@ def main(options):
         return 0
     for name in options.scenes:
         if name not in cases:
-            raise UserError(f"no scene '{name}' in this benchmark; scenes: {', '.join(cases)}")
+            raise UserError(f"no scene '{name}' in this benchmark; {advice(name, cases)}")
     packages.ensure(options.yes)
     if os.path.realpath(sys.executable) != os.path.realpath(PYTHON):
         raise Failure(f"bench needs numpy and matplotlib of {PYTHON}; start scripts/gabion with it")
@@ -46,7 +46,10 @@ def main(options):
     from gabion_tools import bench_page
     from gabion_tools.bench_runs import BenchContext
     folder = (options.out or BUILD / "bench").resolve()
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"--out {short(folder)} cannot be made: {error.strerror}") from None
     context, done, begin = BenchContext(folder, options.full, lambda text: print(text, flush=True)), [], time.monotonic()
     costs = element_costs(folder, context)
     for name, module in cases.items():
@@ -60,7 +63,7 @@ def main(options):
         for line in bench_page.headlines(points, reference):
             print("  " + bench_page.sentence(*line))
         print(f"  {len(points)} points, {sum(bool(p.failed) for p in points)} failed, {time.monotonic() - begin:.0f} s so far", flush=True)
-    print(f"{context.made} runs made, {context.taken} taken from earlier calls; page {short(folder / 'index.html')}")
+    print(f"{context.made} runs made, {context.taken} times one was there already; page {short(folder / 'index.html')}")
     return 1 if any(not points for _, _, points, *_ in done) else 0
 
 
@@ -91,5 +94,6 @@ def element_costs(folder, context):
     from gabion_tools.verify_cases import kernels
     kept = folder / f"kernels-{context.programs}.json"
     if not kept.exists():
+        print("timing an element's step and a grain's", flush=True)
         kept.write_text(json.dumps(kernels.speeds(executable)), encoding="utf-8")
     return bench_points.element_costs(json.loads(kept.read_text(encoding="utf-8")))

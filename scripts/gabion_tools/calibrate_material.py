@@ -3,12 +3,11 @@
 Figures hold for the packing they were found on: its contacts per grain, its solid fraction, its radii's ratio.
 """
 
-import difflib
 import json
 from pathlib import Path
 
 from gabion_tools import build, drawing, laboratory, material_files, material_search, run, scenes
-from gabion_tools.errors import UserError
+from gabion_tools.errors import UserError, advice
 from gabion_tools.places import short
 from gabion_tools.quantities import number, pressure
 
@@ -46,8 +45,7 @@ def listed(text, known, option):
     words = [word.strip() for word in text.split(",") if word.strip()]
     for word in words:
         if word not in known:
-            near = difflib.get_close_matches(word, known, 1)
-            raise UserError(f"{option} '{word}': " + (f"did you mean {near[0]}?" if near else "known: " + ", ".join(known)))
+            raise UserError(f"{option} '{word}': {advice(word, known)}")
     if not words:
         raise UserError(f"{option} is empty; known: " + ", ".join(known))
     return words

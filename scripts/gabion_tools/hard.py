@@ -33,7 +33,7 @@ def run_tests(names):
     known = numbers()
     chosen = sorted(known[name] for name in names if name in known)
     if not chosen:
-        raise Failure("the build knows none of the hard cases' tests")
+        raise Failure("the build knows none of the hard cases' tests: gabion test --hard builds them")
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "tests.xml"
         subprocess.run(["ctest", "--test-dir", str(BUILD), "-j", "2", "--output-on-failure", "--output-junit", str(report),

@@ -1,12 +1,11 @@
 """Materials as the launcher reads and writes them."""
 
-import difflib
 import json
 import re
 from pathlib import Path
 
 from gabion_tools import scenes
-from gabion_tools.errors import UserError
+from gabion_tools.errors import UserError, advice
 from gabion_tools.places import SCENARIOS, short
 
 MATERIALS = SCENARIOS / "materials"
@@ -31,9 +30,7 @@ def load(name):
     if path is None:
         if (SCENARIOS / f"{name}.json").is_file():
             raise UserError(f"'{name}' is a scene; give --young and --poisson with it, or name a material: " + ", ".join(known()))
-        near = difflib.get_close_matches(Path(name).stem, known(), 1)
-        advice = f"did you mean {near[0]}?" if near else "built in: " + ", ".join(known())
-        raise UserError(f"no material '{name}': neither a file nor a built-in one; {advice}")
+        raise UserError(f"no material '{name}': neither a file nor a built-in one; {advice(Path(name).stem, known())}")
     try:
         values = json.loads(scenes.without_comments(path.read_text(encoding="utf-8")))
     except (OSError, ValueError) as error:

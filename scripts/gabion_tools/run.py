@@ -38,10 +38,12 @@ def main(options):
     build.ensure(options.yes)
     for model in chosen:
         code = check_scene(scene, overrides(options, model))
-        if code != 0 or options.check:
+        if code != 0:
             return code
+    if options.check:
+        return 0
     if not options.models:
-        return run_one(scene, options, chosen[0], None)
+        return run_one(scene, options, chosen[0])
     return run_several(scene, options, chosen)
 
 
@@ -98,25 +100,24 @@ def prepare(folder, overwrite):
     return folder.resolve()
 
 
-def run_one(scene, options, model, folder):
+def run_one(scene, options, model):
+    folder = prepare(options.out, options.overwrite) if options.out else None
     changes, choice = zone_size.resolve(scene, overrides(options, model), options.threads)
     model = scenes.model(scene, changes)
-    if folder is None:
-        folder = prepare(options.out, options.overwrite) if options.out else free_folder(f"{scene.stem}-{model}")
-    else:
-        folder = prepare(folder, options.overwrite)
-    code = carry_out(scene, changes, model, folder, options)
-    if choice is not None:
-        (folder / "zone.json").write_text(json.dumps(choice, indent=1), encoding="utf-8")
-    return code
+    return carry_out(scene, changes, model, folder or free_folder(f"{scene.stem}-{model}"), options, choice=choice)
 
 
-def carry_out(scene, changes, model, folder, options, extra=()):
-    """Runs, summarises and draws; extra: further words for the coupler. Exit code of the coupler."""
+def carry_out(scene, changes, model, folder, options, extra=(), choice=None):
+    """Runs, summarises and draws; extra: further words for the coupler; choice: of the zone, for zone.json. Exit code of the coupler."""
     print(f"run folder {short(folder)}", flush=True)
     threads = options.threads or scenes.threads(scene, changes)
-    code = processes.couple(scene, [*scenes.override_arguments(changes), *extra], folder, engines(model, threads),
-                            options.overwrite)
+    code = 1  # an interrupt
+    try:
+        code = processes.couple(scene, [*scenes.override_arguments(changes), *extra], folder, engines(model, threads),
+                                options.overwrite)
+    finally:
+        if choice is not None and code != 2:  # 2: the coupler left the folder as it was
+            (folder / "zone.json").write_text(json.dumps(choice, indent=1), encoding="utf-8")
     if (folder / "summary.json").exists():
         print(summary.table(folder))
         if not options.no_plots:
@@ -128,10 +129,16 @@ def carry_out(scene, changes, model, folder, options, extra=()):
 
 def run_several(scene, options, chosen):
     whole = prepare(options.out, options.overwrite) if options.out else free_folder(f"{scene.stem}-models")
-    worst = 0
-    for model in chosen:
-        worst = max(worst, run_one(scene, options, model, whole / model))
-    done = [whole / model for model in chosen if (whole / model / "summary.json").exists()]
+    worst, folders = 0, {}  # by model
+    for asked in chosen:
+        changes, choice = zone_size.resolve(scene, overrides(options, asked), options.threads)
+        model = scenes.model(scene, changes)
+        if model in folders or (model != asked and model in chosen):
+            print(f"{asked}: zone = auto chose model = {model}, which is run as such")
+            continue
+        folders[model] = prepare(whole / model, options.overwrite)
+        worst = max(worst, carry_out(scene, changes, model, folders[model], options, choice=choice))
+    done = [folder for folder in folders.values() if (folder / "summary.json").exists()]
     if done and not options.no_plots:
         drawing.compare(whole, done)
     return worst

@@ -1,11 +1,10 @@
 """Finding a scene and reading the little of it that the launcher needs."""
 
-import difflib
 import json
 import re
 from pathlib import Path
 
-from gabion_tools.errors import UserError
+from gabion_tools.errors import UserError, advice
 from gabion_tools.places import SCENARIOS, short
 
 MODELS = ("dem", "continuum", "bridging", "edge")
@@ -18,9 +17,7 @@ def find(name):
         if candidate.is_file():
             return Path(short(candidate.resolve()))  # as messages will name it
     known = sorted(path.stem for path in SCENARIOS.glob("*.json") if not path.stem.endswith("schema"))
-    near = difflib.get_close_matches(given.stem, known, 1)
-    advice = f"did you mean {near[0]}?" if near else "known scenes: " + (", ".join(known) or "none")
-    raise UserError(f"no scene '{name}': neither a file nor a name in scenarios/; {advice}")
+    raise UserError(f"no scene '{name}': neither a file nor a name in scenarios/; {advice(given.stem, known)}")
 
 
 def without_comments(text):
@@ -66,9 +63,7 @@ def models(text):
     chosen = [word.strip() for word in text.split(",") if word.strip()]
     for word in chosen:
         if word not in MODELS:
-            near = difflib.get_close_matches(word, MODELS, 1)
-            raise UserError(f"no model '{word}'; " + (f"did you mean {near[0]}?" if near else
-                                                      "models: " + ", ".join(MODELS)))
+            raise UserError(f"no model '{word}'; {advice(word, MODELS)}")
     if not chosen:
         raise UserError("--models needs at least one of " + ", ".join(MODELS) + ", or all")
     return chosen

@@ -8,7 +8,7 @@ import sys
 import traceback
 
 from gabion_tools import build, packages, scenes
-from gabion_tools.errors import Failure, UserError
+from gabion_tools.errors import Failure, UserError, advice
 from gabion_tools.places import PYTHON
 
 HOW_TO_ADD = """A case is a module of scripts/gabion_tools/verify_cases with
@@ -42,7 +42,7 @@ def choose(cases, options):
         return [name for name, module in cases.items() if options.full or not getattr(module, "FULL", False)]
     for name in options.cases:
         if name not in cases:
-            raise UserError(f"no case '{name}'; cases: {', '.join(cases)}")
+            raise UserError(f"no case '{name}'; {advice(name, cases)}")
     return options.cases
 
 

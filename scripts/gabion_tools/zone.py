@@ -18,6 +18,8 @@ def arguments(parser):
 def main(options):
     scene = scenes.find(options.scene)
     scenes.override_arguments(options.overrides)
+    if options.threads is not None and options.threads < 1:
+        raise UserError(f"--threads {options.threads}: at least 1")
     packages.ensure(options.yes)
     build.ensure(options.yes)
     changes = list(options.overrides)

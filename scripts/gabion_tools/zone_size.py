@@ -44,13 +44,28 @@ def box(value):
 
 
 def mean_radius(radius):
-    """By number; of one value, a uniform distribution, or sieve classes by mass."""
+    """By number; of one value, a uniform distribution, or a grain-size curve."""
     if isinstance(radius, dict) and "uniform" in radius:
         return 0.5 * sum(metres(r) for r in radius["uniform"])
     if isinstance(radius, dict):
-        counts = [(metres(r), float(share) / metres(r) ** 3) for r, share in radius["sieve"]]
-        return sum(r * n for r, n in counts) / sum(n for _, n in counts)
+        return mean_cube(radius) * sum(density * (1 / a - 1 / b) for a, b, density in sieves(radius))
     return metres(radius)
+
+
+def mean_cube(radius):
+    """Of the radius, by number."""
+    if isinstance(radius, dict) and "uniform" in radius:
+        a, b = map(metres, radius["uniform"])
+        return (a + b) * (a * a + b * b) / 4
+    if isinstance(radius, dict):  # a mass of 1 makes 1/(mean cube) grains
+        return 1.0 / sum(density * 0.5 * (a ** -2 - b ** -2) for a, b, density in sieves(radius))
+    return metres(radius) ** 3
+
+
+def sieves(radius):
+    """[(a, b, mass density)] between neighbouring sieves."""
+    curve = [(metres(r), float(share)) for r, share in radius["sieve"]]
+    return [(a, b, (q - p) / (b - a)) for (a, p), (b, q) in zip(curve, curve[1:])]
 
 
 def scaled(radius, factor):
@@ -79,8 +94,9 @@ class Sizing:
         self.ground = box(self.values["ground"]["box"])
         self.diameter = 2.0 * mean_radius(self.values["grains"]["radius"])
         self.target = float(self.values["coupling"]["target_error"])
-        per_grain = math.pi / 6.0 * self.diameter ** 3 / float(self.values["grains"]["solid_fraction"])
-        self.density = 1.0 / per_grain  # grains per m3, of equal ones
+        per_grain = 4.0 / 3.0 * math.pi * mean_cube(self.values["grains"]["radius"]) / float(self.values["grains"]["solid_fraction"])
+        self.density = 1.0 / per_grain  # grains per m3
+        self.places = max(3, 4 - math.floor(math.log10(self.diameter)))  # decimals of what is written into the scene, m
         self.coarsening = max(1.0, (volume(self.ground) * self.density / COARSE_GRAINS) ** (1.0 / 3.0))
 
     def quick_changes(self):
@@ -136,13 +152,17 @@ class Sizing:
 
     def zone(self, hole, element):
         elements, diameters, _ = self.rules()
-        overlap = max(elements * element, diameters * self.diameter) if self.model == "bridging" else 0.0
+        overlap = self.up(max(elements * element, diameters * self.diameter)) if self.model == "bridging" else 0.0
         lo, hi = [], []
         for axis in range(3):
             low, high = hole[0][axis] - overlap, hole[1][axis] + overlap
-            lo.append(self.ground[0][axis] if low < self.ground[0][axis] + 2 * element else low)
-            hi.append(self.ground[1][axis] if high > self.ground[1][axis] - 2 * element else high)
+            lo.append(self.ground[0][axis] if low < self.ground[0][axis] + 2 * element else round(low, self.places))
+            hi.append(self.ground[1][axis] if high > self.ground[1][axis] - 2 * element else round(high, self.places))
         return overlap, [lo, hi]
+
+    def up(self, length):
+        """Rounded up: sizes have least values."""
+        return math.ceil(length * 10 ** self.places - 1e-6) / 10 ** self.places
 
     def cost(self, overlap, zone, element):
         """Grain-steps and element-steps of one step, in grain-steps."""
@@ -157,21 +177,27 @@ class Sizing:
         text = [f"quick run: {seen['grains']} grains of {seen['diameter']:.3g} m; {100 * seen['yielded']:.2g} % of them yielded"]
         hole = self.hole(seen)
         if hole is None:
-            text.append("nothing yields: a mesh alone will do (model = continuum)")
+            text.append("nothing yields: a mesh alone (model = continuum); how far it is from all grains was not estimated")
             return {"changes": ["model=continuum"], "text": text, "seen": seen}
         if seen["box"]:
             text.append("yielding ground: " + " x ".join(f"{a:.2f} .. {b:.2f} m" for a, b in zip(*seen["box"])))
         else:
             text.append("nothing yields beside what the fills and the block need")
-        least = LEAST_ELEMENT * self.diameter
+        least = self.up(LEAST_ELEMENT * self.diameter)
         largest = least
         _, _, elements_a_wave = self.rules()
         if seen["frequency"] and seen["shear_speed"]:
             wave = seen["shear_speed"] / seen["frequency"]
             largest = max(least, wave / elements_a_wave)
-            text.append(f"load: 95 % of its rate below {seen['frequency']:.0f} Hz (4 ms mean), shear waves of {wave:.2f} m and longer: elements of up to "
-                        f"{wave / elements_a_wave:.2f} m; at least {least:.2f} m (2.5 diameters)")
-        sizes = [least * (largest / least) ** (k / 8) for k in range(9)] if largest > least else [least]
+            load = f"load: 95 % of its rate below {seen['frequency']:.0f} Hz (4 ms mean), shear waves of {wave:.3g} m and longer"
+            if wave / elements_a_wave < least:
+                text.append(f"{load}: {elements_a_wave} elements a wave would be {wave / elements_a_wave:.3g} m, less than the 2.5 diameters, {least:.3g} m, "
+                            "that an element needs; the run says what motion the mesh could not follow")
+            else:
+                text.append(f"{load}: elements of {least:.3g} m (2.5 diameters) to {largest:.3g} m")
+        else:
+            text.append(f"load: its frequency or the shear speed is not known; elements of 2.5 diameters, {least:.3g} m")
+        sizes = [self.up(least * (largest / least) ** (k / 8)) for k in range(9)] if largest > least else [least]
         element = min(sizes, key=lambda h: self.cost(*self.zone(hole, h), h)[0])
         overlap, zone = self.zone(hole, element)
         total, grains, elements = self.cost(overlap, zone, element)
@@ -183,10 +209,10 @@ class Sizing:
                     ", zone " + " x ".join(f"{a:.2f} .. {b:.2f} m" for a, b in zip(*zone)))
         text.append(f"about {grains:.0f} grains and {elements:.0f} elements, {100 * total / whole:.0f} % of the cost of all grains")
         key = f"coupling.{self.model}"
-        corners = json.dumps([[f"{v:.6g} m" for v in corner] for corner in zone])
-        changes = [f"{key}.zone={corners}", f"mesh.size={element:.6g} m"]
+        corners = json.dumps([[f"{v!r} m" for v in corner] for corner in zone])
+        changes = [f"{key}.zone={corners}", f"mesh.size={element!r} m"]
         if overlap:
-            changes.append(f"{key}.overlap={overlap:.6g} m")
+            changes.append(f"{key}.overlap={overlap!r} m")
         return {"changes": changes, "text": text, "seen": seen, "zone": zone, "overlap": overlap, "element": element,
                 "volume": volume(zone), "cost_share": total / whole}
 

@@ -9,7 +9,8 @@ import numpy as np
 from gabion_tools.run_data import Run
 
 YIELDED = 0.5           # damage of a grain from which on the search for the box begins
-FEWEST_GRAINS = 30      # of a slab, below which its share says nothing
+FEWEST_GRAINS = 10      # of a slab, below which its share says nothing
+WIDTHS = (0.5, 1.0, 2.0)  # of a slab, diameters: the first with grains enough in most slabs
 ENERGY_SHARE = 0.95     # of the load's rate, below the frequency that is given
 
 
@@ -24,20 +25,30 @@ def slab_share(position, damage, axis, inside, edges):
 
 def yield_box(position, damage, diameter, share):
     """[lo, hi] of the ground in which a share of the contacts or more slid or broke, m; None: nowhere."""
-    hit = damage >= YIELDED
-    if not hit.any():
+    hit = damage >= min(YIELDED, 0.5 * damage.max())
+    if damage.max() <= share:
         return None
-    lo, hi = np.quantile(position[hit], 0.01, axis=0), np.quantile(position[hit], 0.99, axis=0)
-    for _ in range(3):
+    lo, hi = np.quantile(position[hit], 0.01, axis=0) - 0.5 * diameter, np.quantile(position[hit], 0.99, axis=0) + 0.5 * diameter
+    for _ in range(4):
         for axis in range(3):
             others = [a for a in range(3) if a != axis]
             inside = np.all((position[:, others] >= lo[others]) & (position[:, others] <= hi[others]), axis=1)
-            first, last = position[:, axis].min(), position[:, axis].max()
-            edges = np.linspace(first, last, max(2, int(round(2 * (last - first) / diameter))) + 1)
-            yields = np.flatnonzero(slab_share(position, damage, axis, inside, edges) >= share)
-            if len(yields):
-                lo[axis], hi[axis] = edges[yields[0]], edges[yields[-1] + 1]
+            low, high = yielding_slabs(position, damage, axis, inside, diameter, share)
+            if low is not None:
+                lo[axis], hi[axis] = low, high
     return [lo.tolist(), hi.tolist()]
+
+
+def yielding_slabs(position, damage, axis, inside, diameter, share):
+    """Ends of the slabs across an axis in which damage reaches the share; (None, None) where none does or none has grains enough."""
+    first, last = position[:, axis].min(), position[:, axis].max()
+    for width in WIDTHS:
+        edges = np.linspace(first, last, max(2, int(round((last - first) / (width * diameter)))) + 1)
+        found = slab_share(position, damage, axis, inside, edges)
+        if np.isfinite(found).mean() > 0.5:
+            break
+    yields = np.flatnonzero(found >= share)
+    return (edges[yields[0]], edges[yields[-1] + 1]) if len(yields) else (None, None)
 
 
 def frequency(time, force):
@@ -48,7 +59,7 @@ def frequency(time, force):
     step = float(np.median(np.diff(time)))
     even = np.arange(time[0], time[-1], step)
     rate = np.gradient(np.interp(even, time, force), step)
-    power = np.abs(np.fft.rfft(rate * np.hanning(len(rate)))) ** 2
+    power = np.abs(np.fft.rfft(rate)) ** 2  # no window: what counts most is at the beginning
     total = np.cumsum(power)
     return float(np.fft.rfftfreq(len(rate), step)[np.searchsorted(total, ENERGY_SHARE * total[-1])])
 

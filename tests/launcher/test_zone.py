@@ -17,6 +17,7 @@ def sizing(target=0.03, fills=(), block=None, model="bridging", half=10.0):
     """A ground of 20 x 20 x 10 m with grains of 0.2 m."""
     one = zone_size.Sizing.__new__(zone_size.Sizing)
     one.model, one.diameter, one.target, one.density = model, 0.2, target, 120.0
+    one.places = 4
     one.ground = [[-half, -half, -half], [half, half, 0.0]]
     one.values = {"fills": [{"box": b} for b in fills], "block": block}
     return one
@@ -57,9 +58,22 @@ class ZoneChoice(unittest.TestCase):
     def test_a_zone_as_large_as_the_ground_becomes_all_grains(self):
         self.assertEqual(sizing(half=3.5).choose(seen(YIELDS))["changes"], ["model=dem"])
 
-    def test_mean_radius_of_sieve_classes_counts_grains(self):
-        # one kilogram of each: eight small ones for a large one
-        self.assertAlmostEqual(zone_size.mean_radius({"sieve": [["0.1 m", 0.5], ["0.2 m", 0.5]]}), (8 * 0.1 + 0.2) / 9)
+    def test_means_of_a_grain_size_curve_count_grains(self):
+        curve = {"sieve": [["0.1 m", 0], ["0.14 m", 0.7], ["0.2 m", 1]]}
+        radius = np.linspace(0.1, 0.2, 200001)
+        number = np.where(radius < 0.14, 0.7 / 0.04, 0.3 / 0.06) / radius ** 3
+        self.assertAlmostEqual(zone_size.mean_radius(curve), np.average(radius, weights=number), 6)
+        self.assertAlmostEqual(zone_size.mean_cube(curve), np.average(radius ** 3, weights=number), 7)
+        self.assertAlmostEqual(zone_size.mean_cube({"uniform": ["0.1 m", "0.2 m"]}), np.mean(radius ** 3), 7)
+
+    def test_far_places_and_odd_diameters_keep_their_digits(self):
+        one = sizing(model="edge")
+        one.ground = [[4468190.0, -10.0, -10.0], [4468210.0, 10.0, 0.0]]
+        one.diameter = 0.33333335
+        choice = one.choose(seen([[4468198.0, -2.0, -2.0], [4468202.0, 2.0, 0.0]]))
+        self.assertAlmostEqual(choice["zone"][0][0], 4468198.0 - one.diameter, 3)
+        self.assertIn("4468197.6667 m", choice["changes"][0])
+        self.assertGreaterEqual(choice["element"], 2.5 * one.diameter)
 
 
 class YieldBox(unittest.TestCase):
@@ -70,6 +84,15 @@ class YieldBox(unittest.TestCase):
         low, high = zone_yield.yield_box(place, np.where(inside, 0.9, 0.0), 0.3, 0.01)
         for found, true in zip(low + high, [-2, -1, -2, 2, 1, 0]):
             self.assertLess(abs(found - true), 0.16)
+
+    def test_a_load_on_few_grains_is_followed(self):
+        random = np.random.default_rng(2)
+        place = random.uniform([-3, -3, -3], [3, 3, 0], (3000, 3))  # slabs of half a diameter under the load hold two grains
+        reach = np.linalg.norm(place, axis=1)
+        for top in (0.9, 0.3):  # the second: no grain loses half of its contacts
+            low, high = zone_yield.yield_box(place, np.where(reach < 1.0, top * (1.0 - reach), 0.0), 0.4, 0.01)
+            for found in (*low, *high[:2]):
+                self.assertTrue(0.5 < abs(found) < 1.5, (low, high))
 
     def test_none_where_nothing_yields(self):
         self.assertIsNone(zone_yield.yield_box(np.zeros((10, 3)), np.zeros(10), 0.3, 0.01))

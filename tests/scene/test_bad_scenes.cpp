@@ -172,6 +172,8 @@ TEST_CASE("places and sizes that do not fit one another") {
   check_mistakes("tiny.json", {
       {{"ground.box[1][0]=-1 m"}, "ground.box", "a lower corner below the upper one in x"},
       {{"grains.radius.uniform=[\"10 cm\",\"5 cm\"]"}, "grains.radius.uniform", "expected the smaller radius first; swap the two values"},
+      {{R"(grains.radius={"sieve": [["5 cm", 0.5], ["10 cm", 0.5]]})"}, "grains.radius.sieve", "expected at least two sieves, radii rising, shares passing from 0 to 1"},
+      {{R"(grains.radius={"sieve": [["5 cm", 0], ["5 cm", 0.5], ["10 cm", 1]]})"}, "grains.radius.sieve", "radii rising"},
       {{"grains.radius.uniform=[\"0.3 m\",\"0.6 m\"]"}, "grains.radius", "grains that fit into the ground, whose smallest side is 0.8 m"},
       {{"coupling.bridging.zone[1][2]=3 m"}, "coupling.bridging.zone", "expected a box inside the ground; compare with ground.box"},
       {{"coupling.bridging.zone[1][2]=-1 m"}, "coupling.bridging.zone", "a lower corner below the upper one in z"},

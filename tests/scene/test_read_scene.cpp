@@ -221,11 +221,16 @@ TEST_CASE("grain sizes in three forms") {
   CHECK(mean_diameter(uniform) == Approx(0.15));
   const Grains one = tiny({"grains.radius=6 cm"}).scene.grains;
   CHECK(one.radius == std::vector<double>{0.06, 0.06});
-  const Grains sieve = tiny({R"(grains.radius={"sieve": [["5 cm", 1], ["10 cm", 3]]})"}).scene.grains;
+  const Grains sieve = tiny({R"(grains.radius={"sieve": [["5 cm", 0], ["8 cm", 0.4], ["10 cm", 1]]})"}).scene.grains;
   CHECK(sieve.radius_kind == "sieve");
-  CHECK(sieve.radius == std::vector<double>{0.05, 0.25, 0.1, 0.75});
-  // by number: 1/0.05^3 = 8000 small ones to 3/0.1^3 = 3000 large ones
-  CHECK(mean_diameter(sieve) == Approx((8 * 0.1 + 3 * 0.2) / 11));
+  CHECK(sieve.radius == std::vector<double>{0.05, 0.0, 0.08, 0.4, 0.1, 1.0});
+  double count = 0.0, length = 0.0;  // numbers go with mass over r^3
+  for (double r = 0.05 + 5e-6; r < 0.1; r += 1e-5) {
+    const double number = (r < 0.08 ? 0.4 / 0.03 : 0.6 / 0.02) / (r * r * r);
+    count += number;
+    length += number * 2 * r;
+  }
+  CHECK(mean_diameter(sieve) == Approx(length / count).epsilon(1e-6));
   const Grains lattice = read_scene(scenarios() / "tiny_lattice.json").scene.grains;
   CHECK(lattice.radius.size() == 1);
   CHECK(lattice.geometry == "frozen");
