@@ -228,6 +228,9 @@ void Simulation::begin_stage(std::size_t index) {
   if (first) {
     rates_->plan(scene_.run.step ? dt : dt * std::sqrt(1.0 + stage.damping));
     place_probes();
+    if (tie_ && scene_.mesh.rates && rates_->period() == 1)
+      warnings_.push_back("mesh.rates: every element is evaluated in every step, since none is far enough from the overlap or border, or none could take two steps at once; "
+                          "leave it out, or lower its layers, or make the elements larger");
   }
   // ends at the first of duration, steps and until; at_least holds for until alone
   std::uint64_t most = stage.steps > 0 ? stage.steps : stage.max_steps;

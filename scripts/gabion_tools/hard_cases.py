@@ -98,7 +98,7 @@ CASES = (
          rank_over_rows="> 0", small_elements_drift="<= 1e-10", small_elements_gap="<= 1e-9"),
     case(15, "thin overlaps, coarse elements, corners", "the tie is lost or blows up",
          "overlaps of 0.5 to 8 elements of 1 to 20 diameters, and a zone with five faces: energy kept, gap closed",
-         "an overlap below one element, or as wide as the zone, is refused; one below two gets a warning",
+         "an overlap below one element, or as wide as the zone, is refused; one below two gets a warning where no block loads the ground",
          [TIED + "overlaps from half an element, elements from one grain to twenty",
           TIED + "a zone with five faces, edges and corners keeps its energy and momentum", "system: mistakes"],
          sizes_drift="<= 1e-10", sizes_gap="<= 1e-9", corner_drift="<= 1e-11", corner_momentum="<= 1e-12"),

@@ -18,10 +18,10 @@ from gabion_tools.errors import Failure, UserError
 from gabion_tools.places import PYTHON, REPOSITORY, executable
 
 COARSE_GRAINS = 30000      # of the quick run, at most about
-ELEMENT_COST = 0.27        # of one element's step over one grain's, `gabion verify kernels`
+ELEMENT_COST = 0.30        # of one element's step over one grain's, `gabion verify kernels`
 YIELD_SHARE = 1.0 / 3.0    # of the target: share of yielding contacts that the mesh may miss
-# least target error: elements and diameters of the overlap, elements a wave
-RULES = ((0.05, (1, 2.5, 6)), (0.02, (2, 5, 6)), (0.0, (4, 10, 10)))
+# least target error, for impacts of a block and for other loads: elements and diameters of the overlap, elements a wave
+RULES = ((0.03, 0.05, (1, 2.5, 6)), (0.02, 0.02, (2, 5, 6)), (0.0, 0.0, (4, 10, 10)))
 LEAST_ELEMENT = 2.5        # diameters
 AXES = "xyz"
 
@@ -148,7 +148,7 @@ class Sizing:
 
     def rules(self):
         """Elements and diameters of the overlap, elements a wave."""
-        return next(rule for least, rule in RULES if self.target >= least)
+        return next(rule for impact, other, rule in RULES if self.target >= (impact if self.values.get("block") else other))
 
     def zone(self, hole, element):
         elements, diameters, _ = self.rules()

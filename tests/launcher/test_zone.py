@@ -42,6 +42,11 @@ class ZoneChoice(unittest.TestCase):
     def test_a_finer_target_has_a_wider_overlap(self):
         self.assertAlmostEqual(sizing(target=0.01).choose(seen(YIELDS))["overlap"], 2.0)
 
+    def test_an_impact_needs_less_overlap_than_other_loads(self):
+        block = {"side": "1 m", "position": ["0 m", "0 m"], "velocity": "10 m/s"}
+        self.assertAlmostEqual(sizing(block=block).choose(seen(YIELDS))["overlap"], 0.5)
+        self.assertAlmostEqual(sizing(block=block, target=0.02).choose(seen(YIELDS))["overlap"], 1.0)
+
     def test_fills_are_covered_where_nothing_yields(self):
         choice = sizing(fills=[[["-3 m", "-1 m", "-1 m"], ["3 m", "1 m", "0 m"]]]).choose(seen())
         self.assertAlmostEqual(choice["zone"][0][0], -3.0 - 0.2 - 1.0)
