@@ -54,7 +54,11 @@ void ZoneWatch::look(std::span<const double> yield, std::span<const double> velo
     used += damaged + yield[3 * g + 2];
   }
   for (Shell& shell : shells_)
-    if (shell.contacts >= fewest_contacts) shell.share = std::max(shell.share, shell.damaged / shell.contacts);
+    if (shell.contacts >= fewest_contacts) {
+      shell.share = std::max(shell.share, shell.damaged / shell.contacts);
+      // a contact counts with both of its grains: the count of damaged ones scatters by sqrt(2 damaged)
+      shell.sure = std::max(shell.sure, (shell.damaged - std::sqrt(2.0 * shell.damaged)) / shell.contacts);
+    }
   if (contacts > 0.0) yield_ratio_ = std::max(yield_ratio_, used / contacts);
   if (needs_velocity()) unresolved_ = std::max(unresolved_, unresolved(velocity));
 }
@@ -92,7 +96,7 @@ double ZoneWatch::unresolved(std::span<const double> velocity) const {
 /// How far, m, damage came from the inner end of the overlap towards this face; 0: not into the overlap.
 double ZoneWatch::depth_of_damage(int face) const {
   for (std::size_t k = 0; k < shells_a_face_; ++k)
-    if (shells_[static_cast<std::size_t>(face) * shells_a_face_ + k].share > tolerable_damage)
+    if (shells_[static_cast<std::size_t>(face) * shells_a_face_ + k].sure > tolerable_damage)
       return static_cast<double>(shells_a_face_ - k) * width_;
   return 0.0;
 }
@@ -101,7 +105,7 @@ double ZoneWatch::depth_of_damage(int face) const {
 double ZoneWatch::missed(int face) const {
   double largest = 0.0;
   for (std::size_t k = 0; k < shells_a_face_; ++k) {
-    const double share = shells_[static_cast<std::size_t>(face) * shells_a_face_ + k].share;
+    const double share = shells_[static_cast<std::size_t>(face) * shells_a_face_ + k].sure;
     const double mesh = zone_.overlap() > 0.0 ? std::max(0.0, 1.0 - (static_cast<double>(k) + 0.5) * width_ / zone_.overlap()) : (k == 0 ? 1.0 : 0.0);
     largest = std::max(largest, mesh * share);
   }
@@ -170,15 +174,21 @@ std::vector<std::string> ZoneWatch::advice(double energy, double tied_damage) co
 }
 
 nlohmann::json ZoneWatch::memory() const {
-  std::vector<double> shares;
-  for (const Shell& shell : shells_) shares.push_back(shell.share);
-  return {{"damage", damage_}, {"shares", shares}, {"yield_ratio", yield_ratio_}, {"unresolved", unresolved_}, {"looked", looked_}};
+  std::vector<double> shares, sure;
+  for (const Shell& shell : shells_) {
+    shares.push_back(shell.share);
+    sure.push_back(shell.sure);
+  }
+  return {{"damage", damage_}, {"shares", shares}, {"sure", sure}, {"yield_ratio", yield_ratio_}, {"unresolved", unresolved_}, {"looked", looked_}};
 }
 
 void ZoneWatch::remember(const nlohmann::json& memory) {
   memory.at("damage").get_to(damage_);
-  const auto shares = memory.at("shares").get<std::vector<double>>();
-  for (std::size_t k = 0; k < std::min(shares.size(), shells_.size()); ++k) shells_[k].share = shares[k];
+  const auto shares = memory.at("shares").get<std::vector<double>>(), sure = memory.at("sure").get<std::vector<double>>();
+  for (std::size_t k = 0; k < std::min(shares.size(), shells_.size()); ++k) {
+    shells_[k].share = shares[k];
+    shells_[k].sure = sure.at(k);
+  }
   yield_ratio_ = memory.at("yield_ratio");
   unresolved_ = memory.at("unresolved");
   looked_ = memory.at("looked");

@@ -51,6 +51,7 @@ class ZoneWatch {
   struct Shell {
     double contacts = 0.0, damaged = 0.0;  ///< of the present look
     double share = 0.0;                    ///< largest so far
+    double sure = 0.0;                     ///< the same, less its standard error
   };
   double depth_of_damage(int face) const;
   double missed(int face) const;

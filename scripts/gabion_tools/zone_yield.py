@@ -10,6 +10,8 @@ from gabion_tools.run_data import Run
 
 YIELDED = 0.5           # damage of a grain from which on the search for the box begins
 FEWEST_GRAINS = 10      # of a slab, below which its share says nothing
+GAP = 1.0               # diameters of ground that stays whole, beyond which single yielding slabs do not count
+START = 1.5             # diameters round the grains that begin the search, so that slabs across them hold enough
 WIDTHS = (0.5, 1.0, 2.0)  # of a slab, diameters: the first with grains enough in most slabs
 ENERGY_SHARE = 0.95     # of the load's rate, below the frequency that is given
 
@@ -28,19 +30,20 @@ def yield_box(position, damage, diameter, share):
     hit = damage >= min(YIELDED, 0.5 * damage.max())
     if damage.max() <= share:
         return None
-    lo, hi = np.quantile(position[hit], 0.01, axis=0) - 0.5 * diameter, np.quantile(position[hit], 0.99, axis=0) + 0.5 * diameter
+    lo, hi = np.quantile(position[hit], 0.01, axis=0) - START * diameter, np.quantile(position[hit], 0.99, axis=0) + START * diameter
     for _ in range(4):
         for axis in range(3):
             others = [a for a in range(3) if a != axis]
             inside = np.all((position[:, others] >= lo[others]) & (position[:, others] <= hi[others]), axis=1)
-            low, high = yielding_slabs(position, damage, axis, inside, diameter, share)
+            low, high = yielding_slabs(position, damage, axis, inside, diameter, share, 0.5 * (lo[axis] + hi[axis]))
             if low is not None:
                 lo[axis], hi[axis] = low, high
     return [lo.tolist(), hi.tolist()]
 
 
-def yielding_slabs(position, damage, axis, inside, diameter, share):
-    """Ends of the slabs across an axis in which damage reaches the share; (None, None) where none does or none has grains enough."""
+def yielding_slabs(position, damage, axis, inside, diameter, share, middle):
+    """Ends of the slabs across an axis in which damage reaches the share, from the one nearest to the middle as far as they follow
+    one another within GAP diameters; (None, None) where none does or none has grains enough."""
     first, last = position[:, axis].min(), position[:, axis].max()
     for width in WIDTHS:
         edges = np.linspace(first, last, max(2, int(round((last - first) / (width * diameter)))) + 1)
@@ -48,7 +51,12 @@ def yielding_slabs(position, damage, axis, inside, diameter, share):
         if np.isfinite(found).mean() > 0.5:
             break
     yields = np.flatnonzero(found >= share)
-    return (edges[yields[0]], edges[yields[-1] + 1]) if len(yields) else (None, None)
+    if not len(yields):
+        return None, None
+    reach = 1 + max(1, round(GAP * diameter / (edges[1] - edges[0])))
+    groups = np.split(yields, np.flatnonzero(np.diff(yields) > reach) + 1)
+    group = min(groups, key=lambda g: max(edges[g[0]] - middle, middle - edges[g[-1] + 1], 0.0))
+    return edges[group[0]], edges[group[-1] + 1]
 
 
 def frequency(time, force):

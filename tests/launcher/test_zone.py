@@ -92,12 +92,12 @@ class YieldBox(unittest.TestCase):
 
     def test_a_load_on_few_grains_is_followed(self):
         random = np.random.default_rng(2)
-        place = random.uniform([-3, -3, -3], [3, 3, 0], (3000, 3))  # slabs of half a diameter under the load hold two grains
+        place = random.uniform([-3, -3, -3], [3, 3, 0], (2000, 3))  # slabs of half a diameter under the load hold few grains
         reach = np.linalg.norm(place, axis=1)
         for top in (0.9, 0.3):  # the second: no grain loses half of its contacts
             low, high = zone_yield.yield_box(place, np.where(reach < 1.0, top * (1.0 - reach), 0.0), 0.4, 0.01)
             for found in (*low, *high[:2]):
-                self.assertTrue(0.5 < abs(found) < 1.5, (low, high))
+                self.assertTrue(0.35 < abs(found) < 1.5, (low, high))
 
     def test_none_where_nothing_yields(self):
         self.assertIsNone(zone_yield.yield_box(np.zeros((10, 3)), np.zeros(10), 0.3, 0.01))
