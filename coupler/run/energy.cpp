@@ -66,6 +66,11 @@ std::vector<double> EnergyBalance::add(const std::optional<protocol::RunDone>& d
   return row;
 }
 
+double EnergyBalance::error_with_swing() const {
+  if (!std::isfinite(error_) || scale_ == 0.0) return error_;
+  return std::max(high_with_swing_, -low_with_swing_) / scale_;
+}
+
 nlohmann::json EnergyBalance::state() const {
   return {{"first", first_}, {"error", error_}, {"residual", residual_}, {"scale", scale_}, {"lost", lost_}, {"drift", drift_},
           {"previous", previous_}, {"started", started_}, {"new_body", new_body_}, {"low", low_}, {"high", high_},

@@ -30,6 +30,8 @@ class EnergyBalance {
   double excursion() const { return scale_ > 0.0 ? (high_ - low_) / scale_ : 0.0; }
   /// The same of balance + rate_swing, what waves in elements of several rates hold beyond kinetic + elastic.
   double excursion_with_swing() const { return scale_ > 0.0 ? (high_with_swing_ - low_with_swing_) / scale_ : 0.0; }
+  /// As error(), of balance + rate_swing.
+  double error_with_swing() const;
   double multiplier_residual() const { return residual_; } ///< |work on grains + work on continuum| over the larger one
   double largest_energy() const { return scale_; }        ///< J
   double dissipated() const { return lost_; }             ///< J
