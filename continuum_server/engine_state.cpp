@@ -170,6 +170,7 @@ std::vector<std::uint8_t> ContinuumEngine::checkpoint() const {
   write(rate_swing_);
   write(past_step_);
   write(step_change_);
+  write(time_);
   return std::move(write.blob);
 }
 
@@ -197,6 +198,7 @@ void ContinuumEngine::restore(std::span<const std::uint8_t> blob) {
   read(rate_swing_);
   read(past_step_);
   read(step_change_);
+  read(time_);
   if (!read.at_end())
     throw RequestError("RESTORE.blob", "the state is too long", "take it from an engine set up the same way");
 }
