@@ -77,10 +77,9 @@ def jobs(context):
     yield {"label": "bridging, +-4.1 m, weights' floor 0.1", "knob": "weights", "measure": lambda: measure(context, bridging(4.1, **{"coupling.bridging.weight_floor": 0.1}))}
     for half in (2.85, 2.7, 2.6):
         yield {"label": f"bridging, +-{half} m, overlap 0.75 m", "knob": "zone", "measure": lambda half=half: measure(context, bridging(half, overlap=0.75))}
-    thin = {"bridging, +-2.7 m, overlap 0.75 m, " + label: (knob, change) for label, knob, change in (
-        ("grading 1.6", "grading", {"mesh.grading": 1.6}), ("rates up to 4", "rates", {"mesh.rates": {"largest": 4}}),
-        ("sponge of 12.8", "sponge", {"coupling.bridging.sponge": {"strength": 12.8}}))}
-    for label, (knob, change) in thin.items():
-        yield {"label": label, "knob": knob, "measure": lambda change=change: measure(context, bridging(2.7, overlap=0.75, **change))}
+    for what, knob, change in (("grading 1.6", "grading", {"mesh.grading": 1.6}), ("rates up to 4", "rates", {"mesh.rates": {"largest": 4}}),
+                               ("sponge of 12.8", "sponge", {"coupling.bridging.sponge": {"strength": 12.8}})):
+        yield {"label": f"bridging, +-2.7 m, overlap 0.75 m, {what}", "knob": knob,
+               "measure": lambda change=change: measure(context, bridging(2.7, overlap=0.75, **change))}
     for half in (3.75, 3.0, 2.6, 2.25, 2.1):
         yield {"label": f"edge, zone +-{half} m", "knob": "zone", "measure": lambda half=half: measure(context, edge(half))}
